@@ -68,8 +68,8 @@ constexpr SurfaceQuantityTraits kQuantities[] = {
     {.name = "skewness",
      .heading = "skewness",
      .of_disc = [](const SurfaceDisc& disc) { return disc.moments.skewness; },
-     .has_mean = true,
-     .words = skewness_words},
+     .words = skewness_words,
+     .has_mean = true},
     {.name = "kurtosis",
      .heading = "kurtosis",
      .of_disc = [](const SurfaceDisc& disc) { return disc.moments.kurtosis; },
@@ -84,14 +84,14 @@ constexpr SurfaceQuantityTraits kQuantities[] = {
     {.name = "bend",
      .heading = "bend between facets, degrees",
      .list = "bends",
-     .only_flat = true,
-     .words = bend_words},
+     .words = bend_words,
+     .only_flat = true},
     // A slope follows the body's shape, which one draw does not share with another.
     {.name = "slope",
      .heading = "slope, degrees",
      .list = "slopes",
-     .counts_in_distance = false,
-     .words = slope_words},
+     .words = slope_words,
+     .counts_in_distance = false},
 };
 
 }  // namespace

@@ -40,13 +40,12 @@ struct SurfaceQuantityTraits {
   // What a disc has of it; null for what is not measured within radii, whose distribution in JSON is `list`.
   double (*of_disc)(const SurfaceDisc&) = nullptr;
   const char* list = nullptr;
+  // What is said of a second surface that differs. Differences that `follows` shows need no words.
+  std::string (*words)(const StatisticComparison&);
   bool has_mean = false;  // the middle of its values is their mean, not their median
   bool counts_in_distance = true;
   bool only_flat = false;  // only what is flatter than all but a few places of the first surface counts
-  // What is said of a second surface that differs, and whether the words go with a range of scales.
-  // Differences that `follows` shows need no words.
-  std::string (*words)(const StatisticComparison&);
-  bool by_scale = false;
+  bool by_scale = false;   // the words go with a range of scales
   std::optional<SurfaceQuantity> follows = std::nullopt;
 };
 
