@@ -20,6 +20,10 @@ double surface_area(const TriangleMesh& mesh) {
   return area;
 }
 
+double mean_edge(const TriangleMesh& mesh) {
+  return std::sqrt(4.0 / std::sqrt(3.0) * surface_area(mesh) / static_cast<double>(mesh.triangles.size()));
+}
+
 double volume(const TriangleMesh& mesh) {
   const Vec3d origin = mesh.bounds().center();
   double sum = 0;

@@ -9,6 +9,9 @@ double triangle_area(const TriangleMesh& mesh, const Triangle& triangle);
 
 double surface_area(const TriangleMesh& mesh);
 
+// The edge of as many equilateral triangles of the same area. Expects a triangle.
+double mean_edge(const TriangleMesh& mesh);
+
 // The signed volume: positive for a closed mesh whose faces are counter-clockwise seen from outside. For an
 // open mesh it is the volume of the cone over the centre of the bounding box, and depends on that choice.
 double volume(const TriangleMesh& mesh);

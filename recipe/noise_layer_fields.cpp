@@ -53,10 +53,9 @@ void check_relief_heights(const ReliefLayer& layer, const Place& place) {
   place.field("high").fail("must not be below low");
 }
 
-// Patches of other sizes would take long to draw.
 void check_model_edge(const ReliefLayer& layer, const Place& place) {
   const double spacings = layer.edge / layer.spacing;
-  if (layer.edge == 0.0 || (spacings >= 0.25 && spacings <= 8.0)) return;
+  if (layer.edge == 0.0 || (spacings >= kLeastReliefEdge && spacings <= kMostReliefEdge)) return;
   place.field("edge").fail("must be 0, or 0.25 to 8 spacings, as fit_shape writes it");
 }
 

@@ -28,6 +28,8 @@ constexpr std::string_view arrangement_word(ReliefArrangement a) {
 // comes from the grey value v of the image's pixel for q:
 //   h = low + (high - low) round((v - 1) (levels - 1) / 65534) / (levels - 1).
 inline constexpr int kMostFinerLevels = 6;
+inline constexpr double kLeastReliefEdge = 0.25,
+                        kMostReliefEdge = 8.0;  // spacings; patches of other sizes take long
 struct ReliefLayer : NamedImage {
   static constexpr std::string_view kType = "relief";
   static constexpr LayerTraits kTraits{
@@ -42,7 +44,8 @@ struct ReliefLayer : NamedImage {
   // The length here of a unit of the donor, which keeps its own lengths, and with it those of this layer: its
   // places could not be found again in another unit. 1 without a donor.
   double donor_scale = 1.0;
-  double edge = 0.0;         // mean edge of the model that was measured, length units; 0: 1.2 spacings
+  // Of the ground that the heights show, length units: the mean edge of the model, or a larger spacing.
+  double edge = 0.0;         // 0: 1.2 spacings
   double reach = 0.3;        // of donors with kLike, as a share of the body's diagonal
   bool fill_unseen = false;  // whether ground that no camera saw gets patches of seen ground
   double spacing = 1.0;      // length units between lines of the lattice, > 0

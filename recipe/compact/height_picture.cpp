@@ -28,7 +28,7 @@ bool has_heights(const HeightPicture& picture) {
   return std::any_of(picture.values.begin(), picture.values.end(), [](std::uint16_t v) { return v != 0; });
 }
 
-void encode_one(const HeightPicture& picture, RangeEncoder& encoder) {
+void encode_one(const HeightPicture& picture, Prediction prediction, RangeEncoder& encoder) {
   encoder.encode_uniform(static_cast<std::uint64_t>(picture.width), kSides);
   encoder.encode_uniform(static_cast<std::uint64_t>(picture.height), kSides);
   HeightPicture copy = picture;
@@ -38,11 +38,11 @@ void encode_one(const HeightPicture& picture, RangeEncoder& encoder) {
   const HeightRange range = range_of(copy);
   encoder.encode_uniform(static_cast<std::uint64_t>(range.low), kValues);
   encoder.encode_uniform(static_cast<std::uint64_t>(range.high), kValues);
-  code_heights(copy, range, coder);
+  code_heights(copy, range, prediction, coder);
 }
 
 // Reads what follows the sides of a picture.
-void decode_one(HeightPicture& picture, RangeDecoder& decoder) {
+void decode_one(HeightPicture& picture, Prediction prediction, RangeDecoder& decoder) {
   BitCoder coder(decoder);
   code_mask(picture, coder);
   if (!has_heights(picture)) return;
@@ -50,14 +50,14 @@ void decode_one(HeightPicture& picture, RangeDecoder& decoder) {
   range.low = static_cast<int>(decoder.decode_uniform(kValues));
   range.high = static_cast<int>(decoder.decode_uniform(kValues));
   if (range.low < 1 || range.low > range.high) throw DamagedStream();
-  code_heights(picture, range, coder);
+  code_heights(picture, range, prediction, coder);
 }
 
 int decode_side(RangeDecoder& decoder) { return static_cast<int>(decoder.decode_uniform(kSides)); }
 
 // A large picture is cut into bands of rows, each a stream of its own, so that several threads can code it.
 constexpr std::size_t kMostPixelsOfOne = std::size_t{1} << 20;
-constexpr int kBands = 4;
+constexpr int kBands = 8;
 
 // The band's rows of a picture, without values.
 HeightPicture band_of(const HeightPicture& picture, int band) {
@@ -78,7 +78,7 @@ std::array<std::string, kBands> encoded_bands(const HeightPicture& picture) {
   parallel_for(0, kBands, [&](std::int64_t number) {
     const auto b = static_cast<std::size_t>(number);
     RangeEncoder encoder;
-    encode_one(bands[b], encoder);
+    encode_one(bands[b], Prediction::kQuick, encoder);
     streams[b] = encoder.finish();
   });
   return streams;
@@ -91,7 +91,7 @@ void decode_bands(const std::array<std::string, kBands>& streams, HeightPicture&
     HeightPicture& band = bands[b] = band_of(picture, static_cast<int>(b));
     RangeDecoder decoder(streams[b]);
     if (decode_side(decoder) != band.width || decode_side(decoder) != band.height) throw DamagedStream();
-    decode_one(band, decoder);
+    decode_one(band, Prediction::kQuick, decoder);
   });
   for (const HeightPicture& band : bands)
     picture.values.insert(picture.values.end(), band.values.begin(), band.values.end());
@@ -100,7 +100,7 @@ void decode_bands(const std::array<std::string, kBands>& streams, HeightPicture&
 }  // namespace
 
 void encode(const HeightPicture& picture, RangeEncoder& encoder) {
-  if (picture.pixels() <= kMostPixelsOfOne) return encode_one(picture, encoder);
+  if (picture.pixels() <= kMostPixelsOfOne) return encode_one(picture, Prediction::kClose, encoder);
   // No picture of one stream has rows without columns.
   encoder.encode_uniform(0, kSides);
   encoder.encode_uniform(kBands, kSides);
@@ -119,7 +119,7 @@ HeightPicture decode(std::size_t most_pixels, RangeDecoder& decoder) {
   if (in_bands) picture.width = decode_side(decoder), picture.height = decode_side(decoder);
   if (picture.pixels() > most_pixels) throw DamagedStream();
   if (!in_bands) {
-    decode_one(picture, decoder);
+    decode_one(picture, Prediction::kClose, decoder);
     return picture;
   }
   std::array<std::string, kBands> streams;

@@ -58,18 +58,21 @@ class Errors {
   int least_;
 };
 
-// Two predictors guess each height, one from twelve pixels and one from six with a shorter memory. The errors
-// of either nearby tell how far its guess may be wrong.
+// Two predictors guess each height, one with a long memory, from twelve pixels or, to be quick, from six, and
+// one from six with a shorter memory. The errors of either nearby tell how far its guess may be wrong.
 class HeightCoder {
  public:
-  HeightCoder(HeightPicture& picture, const HeightRange& range, BitCoder& coder)
+  HeightCoder(HeightPicture& picture, const HeightRange& range, Prediction prediction, BitCoder& coder)
       : picture_(picture),
         low_(range.low),
         steps_(range.high - range.low + 1),
         unit_(unit_of(steps_)),
         last_(steps_ / 2 * unit_),
         heights_(picture.width, picture.height, kHole),
-        predictors_{HeightPredictor(picture.width, HeightPredictor::kMostNeighbours, 230, unit_),
+        predictors_{HeightPredictor(picture.width,
+                                    prediction == Prediction::kClose ? HeightPredictor::kMostNeighbours
+                                                                     : HeightPredictor::kFewNeighbours,
+                                    230, unit_),
                     HeightPredictor(picture.width, HeightPredictor::kFewNeighbours, 155, unit_)},
         errors_{Errors(picture.width, picture.height, unit_), Errors(picture.width, picture.height, unit_)},
         best_errors_(picture.width, picture.height, unit_),
@@ -158,8 +161,8 @@ class HeightCoder {
 
 }  // namespace
 
-void code_heights(HeightPicture& picture, const HeightRange& range, BitCoder& coder) {
-  HeightCoder(picture, range, coder).code_picture();
+void code_heights(HeightPicture& picture, const HeightRange& range, Prediction prediction, BitCoder& coder) {
+  HeightCoder(picture, range, prediction, coder).code_picture();
 }
 
 }  // namespace astrolith

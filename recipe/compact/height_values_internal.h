@@ -10,7 +10,10 @@ struct HeightRange {
   int low = 0, high = 0;  // 1 <= low <= high <= 65535
 };
 
+// How heights are predicted: closely, or in a third of the time with some more bytes.
+enum class Prediction { kClose, kQuick };
+
 // Writes the values that are not 0, or reads them in their place. All are in `range`.
-void code_heights(HeightPicture& picture, const HeightRange& range, BitCoder& coder);
+void code_heights(HeightPicture& picture, const HeightRange& range, Prediction prediction, BitCoder& coder);
 
 }  // namespace astrolith

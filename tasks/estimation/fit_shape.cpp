@@ -22,6 +22,7 @@
 #include "tasks/estimation/fit_checkpoint.h"
 #include "tasks/estimation/fit_realism.h"
 #include "tasks/estimation/fit_time_limit.h"
+#include "tasks/estimation/relief_size.h"
 #include "tasks/estimation/repaired_target.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/job/job.h"
@@ -39,7 +40,7 @@ Recipe recipe_of(const Job& job, const FitArguments& arguments, const ShapeFitRe
   Recipe recipe;
   recipe.length_unit = arguments.unit;
   recipe.body = fit.body;
-  if (arguments.fit.bytes > 0) return recipe;
+  if (arguments.bytes > 0) return recipe;
   recipe.seed = job.seed;
   recipe.provenance.tool = job.tool();
   if (!arguments.in_memory) {
@@ -53,12 +54,16 @@ Recipe recipe_of(const Job& job, const FitArguments& arguments, const ShapeFitRe
 // Adds the measured surface as a relief, and says how much nearer it brings the model.
 void keep_relief(Job& job, const FitArguments& arguments, const TargetBody& target, const Progress& progress,
                  Recipe& recipe) try {
-  const ReliefFit relief = add_relief(target, {arguments.details.relief_spacing, 0.0}, progress, recipe);
+  const ReliefFit relief =
+      arguments.bytes > 0
+          ? add_relief_within(target, static_cast<std::size_t>(arguments.bytes), progress, recipe)
+          : add_relief(target, arguments.details.relief_spacing, progress, recipe);
   job.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
                       relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
   job.summary["relief"] = relief_json(relief);
 } catch (const InputError& e) {
-  if (arguments.details.relief_spacing > 0.0) throw InputError("--relief-spacing: " + std::string(e.what()));
+  if (!arguments.details.relief_spacing.empty())
+    throw InputError("--relief-spacing: " + std::string(e.what()));
   if (!arguments.details.chosen_by_job()) throw;
   job.say(std::string("no relief: ") + e.what());
   job.summary["relief"] = {{"remark", e.what()}};
@@ -283,6 +288,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     return result;
   }
   if (arguments.details.keeps_relief() && !arguments.details.chosen_by_job()) expect_relief(target);
+  settle_metaballs(job, target, arguments);
 
   FitCheckpoint checkpoint(arguments.checkpoint,
                            {job.tool(), kCodeVersion.changes, arguments.mesh_sha256, job.options.given()});
@@ -303,7 +309,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     return result;
   }
   if (limit.reached()) job.say("stopped at the time limit: this is the best so far");
-  if (arguments.fit.bytes == 0) note_achieved(fit, recipe);
+  if (arguments.bytes == 0) note_achieved(fit, recipe);
   if (!arguments.output.empty()) write_loaded_recipe(recipe, arguments.output);
   const std::optional<FitRealism> realism = judge_surface(job, arguments, target, recipe, limit);
   if (!arguments.report.empty()) write_report(arguments, target, fit, recipe, realism);

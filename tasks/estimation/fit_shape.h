@@ -22,6 +22,7 @@ struct FitArguments {
   double time_limit = 0.0;  // seconds; 0 = none
   int noise_seeds = 3;      // of the verdict on the surface; 0 = no verdict
   bool packing_only = false;
+  int bytes = 0;         // of the whole compact recipe, at most; 0 = any. fit.bytes are those of its body
   double density = 0.0;  // kg / m^3; 0 = no masses
   ShapeFitOptions fit;
   DetailArguments details;
@@ -43,5 +44,8 @@ FittedShape fit_shape(Job& job, FitArguments& arguments);
 
 // Turns the words of the options into the fit's settings, and sets its seed.
 void settle_fit_options(const Job& job, FitArguments& arguments);
+
+// Sets the number of the metaballs and their bytes, which the details of this target leave to them.
+void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments);
 
 }  // namespace astrolith

@@ -8,6 +8,7 @@
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/detail_layers.h"
+#include "tasks/estimation/relief_size.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
@@ -66,11 +67,13 @@ void declare_detail_options(Job& job, DetailArguments& arguments) {
       .reads(recipe_and_images)
       .excludes(base_only);
   job.options
-      .add_option("--relief-spacing", arguments.relief_spacing,
-                  "of the heights of a relief, in the unit of the mesh; larger ones make smaller recipes")
-      .check(above_zero())
-      .placeholder("L")
-      .default_text("as fine as the mesh")
+      .add_option(
+          "--relief-spacing", arguments.relief_spacing,
+          "of the heights of a relief, in the mesh's unit, or with a unit of its own: m, km, or edges, "
+          "the mean edges of the mesh; larger ones make smaller recipes. auto: as fine as the mesh")
+      .check(relief_spacing_words())
+      .placeholder("L[m|km|edges]|auto")
+      .default_text("auto")
       .excludes(base_only);
   declare_micro_options(job, arguments);
   Option variations =
@@ -96,7 +99,7 @@ void check_detail_inputs(const Job& job, const DetailArguments& arguments) {
   if (job.options.option("--generations").count() > 0 && !arguments.searches()) {
     throw InputError("--generations: are those of --details thesis; give that too, or leave them out");
   }
-  if (arguments.relief_spacing > 0.0 && !arguments.keeps_relief())
+  if (!arguments.relief_spacing.empty() && !arguments.keeps_relief())
     throw InputError("--relief-spacing: is about --details relief; give that, or leave it out");
   Recipe unused;
   if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;

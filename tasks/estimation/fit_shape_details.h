@@ -18,8 +18,8 @@ struct DetailArguments {
   int generations = 100;
   // "relief", "thesis", "auto", or a recipe whose layers are taken; "": not settled yet
   std::string details;
-  double relief_spacing = 0.0;  // of heights, in the unit of the mesh; 0 = as the model is fine
-  std::string micro;            // a recipe of Gabor layers, "auto", or nothing
+  std::string relief_spacing;  // of heights (relief_spacing_words()); "": as the model is fine
+  std::string micro;           // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;

@@ -1,14 +1,20 @@
 #include "tasks/estimation/fit_shape.h"
 
+#include <algorithm>
+
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_format.h"
 #include "numerics/errors.h"
+#include "tasks/estimation/relief_size.h"
 #include "tasks/job/density_question.h"
 #include "tasks/repair/mesh_unit.h"
 #include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 namespace {
+
+// More of them bring the heights hardly nearer, and make a likeness of them rougher underneath.
+constexpr int kMetaballsUnderRelief = 80;
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(OptionTable& app, FitArguments& arguments) {
@@ -29,11 +35,13 @@ void declare_base_options(OptionTable& app, FitArguments& arguments) {
           recipes.push_back(file.string());
         return recipe_and_relief(recipes);
       });
-  app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs").check(in_range(1, 10000));
+  app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs")
+      .check(in_range(1, 10000))
+      .default_text("80 under a relief, else 200");
   app.add_option(
-         "--bytes", arguments.fit.bytes,
-         "round the numbers of the metaballs so that the recipe of the bare body takes at most so many "
-         "bytes as a compact recipe (RECIPE.astro), for the least error; without --spheres the number of "
+         "--bytes", arguments.bytes,
+         "the most bytes of the result as a compact recipe (RECIPE.astro), for the least error: the numbers "
+         "of the metaballs are rounded, and heights are as many as fit. Without --spheres the number of "
          "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
       .check(in_range(100, 1000000))
       .default_text("");
@@ -117,7 +125,7 @@ void declare_fit_options(Job& job, FitArguments& arguments) {
   declare_run_options(job.options, arguments);
   declare_packing_options(job.options, arguments);
   Option bytes = job.options.option("--bytes");
-  for (const char* option : {"--packing-only", "--variations", "--micro"}) {
+  for (const char* option : {"--packing-only", "--variations", "--micro", "--relief-spacing"}) {
     bytes.excludes(job.options.option(option));
   }
 }
@@ -126,14 +134,26 @@ void settle_fit_options(const Job& job, FitArguments& arguments) {
   arguments.fit.seed = job.seed;
   if (!arguments.in_memory) arguments.unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
   arguments.fit.length_unit = arguments.unit;
-  if (arguments.fit.bytes > 0 && !arguments.details.base_only) {
-    throw InputError("--bytes: counts the bare body's bytes, to which details would add; add --base-only");
+  if (arguments.bytes > 0 && !arguments.details.base_only && !arguments.details.keeps_relief()) {
+    throw InputError(
+        "--bytes: counts those of metaballs and heights, to which other details would add; add --base-only "
+        "or "
+        "--details relief");
   }
   question_density(job, arguments.density);
-  if (arguments.fit.bytes > 0 && job.options.option("--spheres").count() == 0) {
-    arguments.fit.spheres = spheres_for_bytes(arguments.fit.bytes);
-  }
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
+}
+
+void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments) {
+  const DetailArguments& details = arguments.details;
+  const bool relief = !details.base_only && details.keeps_relief() && can_have_relief(target);
+  ShapeFitOptions& fit = arguments.fit;
+  fit.bytes = arguments.bytes;
+  if (job.options.option("--spheres").count() == 0) {
+    if (arguments.bytes > 0) fit.spheres = spheres_for_bytes(arguments.bytes);
+    if (relief) fit.spheres = std::min(fit.spheres, kMetaballsUnderRelief);
+  }
+  if (relief && arguments.bytes > 0) fit.bytes = std::min(fit.bytes, bytes_for_spheres(fit.spheres));
 }
 
 }  // namespace astrolith

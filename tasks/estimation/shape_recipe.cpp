@@ -69,17 +69,6 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
   return result;
 }
 
-void expect_relief(const TargetBody& target) { expect_relief_facets(target.surface); }
-
-ReliefFit add_relief(const TargetBody& target, const ReliefOptions& options, const Progress& progress,
-                     Recipe& recipe) {
-  TriangleMesh surface = target.surface;
-  for (Vec3d& p : surface.vertices) p = target.center + target.diagonal * p;
-  ReliefFit relief = fit_relief(surface, recipe, options, progress);
-  recipe.layers.emplace_back(relief.layer);
-  return relief;
-}
-
 nlohmann::ordered_json relief_json(const ReliefFit& relief) {
   return {
       {"heights", relief.heights},     {"spacing", relief.layer.spacing},       {"step", relief.layer.step()},

@@ -26,13 +26,6 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
                                       int generations, EvaluationLog& log, CandidateEvaluator* evaluator,
                                       const Progress& progress, Recipe& recipe);
 
-// Adds the heights of the target's surface over the recipe's body (in the file's frame) as a relief layer.
-// Throws as fit_relief().
-// expect_relief() throws what it would throw for a target of too few facets.
-ReliefFit add_relief(const TargetBody& target, const ReliefOptions& options, const Progress& progress,
-                     Recipe& recipe);
-void expect_relief(const TargetBody& target);
-
 // Measures the whole recipe as the fit measured its base: the fit's check and similarity become those of the
 // recipe. The similarity is that of the descriptor that `compare` uses by default (ahd), with 5,000 points
 // for each mesh.

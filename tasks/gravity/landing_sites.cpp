@@ -22,15 +22,6 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-double mean_edge(const TriangleMesh& mesh) {
-  double sum = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sum += norm(mesh.vertices[b] - mesh.vertices[a]) + norm(mesh.vertices[c] - mesh.vertices[b]) +
-           norm(mesh.vertices[a] - mesh.vertices[c]);
-  }
-  return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
-}
-
 void check_side(const TriangleMesh& mesh, double side) {
   constexpr double kFewestEdges = 4.0, kLargest = 0.25;
   const double least = kFewestEdges * mean_edge(mesh), most = kLargest * norm(mesh.bounds().extent());

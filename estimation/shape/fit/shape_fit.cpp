@@ -1,6 +1,7 @@
 #include "estimation/shape/fit/shape_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "descriptor/histogram_distance.h"
@@ -22,6 +23,10 @@ constexpr int kFewSpheres = 16;  // so many metaballs may all come from the pack
 // The numbers of a body keep the digits that matter: without the others its mean distance grows by this
 // share.
 constexpr double kMostDigitsLoss = 0.01;
+
+// Bytes of compact recipes, measured on Eros, Bennu and Kleopatra: 200 metaballs lose 1 to 5 % at 4 bytes
+// each, and 6 to 18 % at 3.5. More metaballs are smaller and need finer steps.
+constexpr double kText = 45.0, kBytesEach = 4.1, kMoreForTwice = 0.15;
 
 constexpr std::int64_t kSearchSamples = 800;       // the cost of a fitness grows with the square
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
@@ -140,13 +145,12 @@ ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
 }  // namespace
 
 int spheres_for_bytes(int bytes) {
-  // Measured on Eros, Bennu and Kleopatra: 200 metaballs lose 1 to 5 % at 4 bytes each, and 6 to 18 % at 3.5.
-  // More metaballs are smaller and need finer steps.
-  constexpr double kText = 45.0, kBytesEach = 4.1, kMoreForTwice = 0.15;
   const double doublings = portable::log(bytes / 1250.0) / std::numbers::ln2;
   const double bytes_each = std::max(3.5, kBytesEach + kMoreForTwice * doublings);
   return static_cast<int>(std::clamp((bytes - kText) / bytes_each, 1.0, 10000.0));
 }
+
+int bytes_for_spheres(int spheres) { return static_cast<int>(std::ceil(kText + kBytesEach * spheres)); }
 
 void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
   const std::uint64_t seed = options.seed;

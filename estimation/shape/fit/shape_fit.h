@@ -39,6 +39,8 @@ struct ShapeFitOptions {
 // The number of metaballs with which a compact recipe of so many bytes comes closest to its target, as far as
 // this can be said for every body: 1 .. 10000.
 int spheres_for_bytes(int bytes);
+// The bytes of so many metaballs by the same measure.
+int bytes_for_spheres(int spheres);
 
 struct ShapeFitResult {
   MetaballBody body;        // in the file's frame and unit

@@ -32,20 +32,6 @@ double least_spacing(const TriangleMesh& surface) {
   return 1.03 * std::max(of_picture, of_cells);
 }
 
-// The spacing whose square holds one place, where a surface of this area faces an axis.
-double default_spacing(const TriangleMesh& surface) {
-  const double vertices = static_cast<double>(surface.vertices.size());
-  const double places =
-      std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
-  return std::max(std::sqrt(surface_area(surface) / places), least_spacing(surface));
-}
-
-// The edge of equilateral facets that cover the surface.
-double mean_edge(const TriangleMesh& surface) {
-  return std::sqrt(4.0 / std::sqrt(3.0) * surface_area(surface) /
-                   static_cast<double>(surface.triangles.size()));
-}
-
 void expect_plain_body(const Recipe& recipe) {
   if (recipe.body && recipe.body->operations.empty() && !recipe.body->warp) return;
   throw InputError(
@@ -92,6 +78,14 @@ std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::v
 
 }  // namespace
 
+double least_relief_spacing(const TriangleMesh& surface) {
+  const double vertices = static_cast<double>(surface.vertices.size());
+  const double places =
+      std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
+  // The square of the spacing holds one place where the surface faces an axis.
+  return std::max(std::sqrt(surface_area(surface) / places), least_spacing(surface));
+}
+
 void expect_relief_facets(const TriangleMesh& surface) {
   if (surface.triangles.size() >= kFewestReliefFacets) return;
   throw InputError("a relief needs a model of at least " + std::to_string(kFewestReliefFacets) +
@@ -105,8 +99,13 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   expect_plain_body(recipe);
   ReliefFit fit;
   ReliefLayer& layer = fit.layer;
-  layer.edge = mean_edge(surface);
-  layer.spacing = options.spacing > 0.0 ? options.spacing : default_spacing(surface);
+  layer.spacing = options.spacing > 0.0 ? options.spacing : least_relief_spacing(surface);
+  // Heights farther apart show the ground of a model with longer edges.
+  layer.edge = std::max(mean_edge(surface), layer.spacing);
+  if (layer.edge > kMostReliefEdge * layer.spacing) {
+    throw InputError("relief.spacing: is below an eighth of the mean edge of the surface, which is " +
+                     std::to_string(layer.edge) + "; make it larger");
+  }
   const ReliefSamples samples = relief_samples(surface, recipe, layer.spacing);
   if (samples.places.empty() || samples.samples.empty()) {
     throw InputError("the body lies nowhere near the surface; fit its base first");

@@ -30,6 +30,9 @@ struct ReliefFit {
   double left_out = 0.0;       // share of the samples that no height reaches, [0, 1]
 };
 
+// The spacing that shows what the facets of a surface show, or the least that a relief of it may have.
+double least_relief_spacing(const TriangleMesh& surface);
+
 // Throws InputError for a surface of fewer than kFewestReliefFacets facets.
 void expect_relief_facets(const TriangleMesh& surface);
 

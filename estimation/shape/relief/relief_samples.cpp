@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "estimation/shape/relief/relief_blend.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/body/ground_points.h"
 
@@ -20,23 +21,28 @@ struct PlacedSample {
   ReliefSample sample;
 };
 
-// Points of the surface in groups of neighbours: of vertices, then of facets.
+// Points of the surface in groups of neighbours: of vertices, then of facets, where these are not small.
 class SurfacePoints {
  public:
-  explicit SurfacePoints(const TriangleMesh& surface)
-      : surface_(surface), used_(surface.vertices.size(), 0), of_vertices_(groups(surface.vertices.size())) {
+  SurfacePoints(const TriangleMesh& surface, double spacing)
+      : surface_(surface),
+        used_(surface.vertices.size(), 0),
+        of_vertices_(groups(surface.vertices.size())),
+        of_facets_(kSmallEdges * spacing < mean_edge(surface) ? groups(4 * surface.triangles.size()) : 0) {
     for (const Triangle& t : surface.triangles) {
       for (const std::uint32_t corner : t) used_[corner] = 1;
     }
   }
 
-  std::size_t count() const { return of_vertices_ + groups(4 * surface_.triangles.size()); }
+  std::size_t count() const { return of_vertices_ + of_facets_; }
   std::vector<Vec3d> group(std::size_t number) const {
     return number < of_vertices_ ? vertices(number * kGroup)
                                  : on_facets((number - of_vertices_) * (kGroup / 4));
   }
 
  private:
+  static constexpr double kSmallEdges = 0.5;  // spacings
+
   static std::size_t groups(std::size_t points) { return (points + kGroup - 1) / kGroup; }
   std::vector<Vec3d> vertices(std::size_t first) const {
     std::vector<Vec3d> points;
@@ -59,7 +65,7 @@ class SurfacePoints {
 
   const TriangleMesh& surface_;
   std::vector<char> used_;
-  std::size_t of_vertices_;
+  std::size_t of_vertices_, of_facets_;
 };
 
 class SampleFinder {
@@ -142,7 +148,7 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
     made.weights[i] = place == kNoPlace ? 0.0f : made.places[place].weight;
   }
 
-  const SurfacePoints points(surface);
+  const SurfacePoints points(surface, spacing);
   const SampleFinder finder(ground, made, spacing);
   std::vector<std::vector<PlacedSample>> groups(points.count());
   std::vector<std::size_t> asked(groups.size());
