@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Damages measured shapes in ten ways, fits each, and compares the fits with the clean shape.
 
-    damaged_meshes.py BIN SHAPE.ply ... [--spheres 60] [--only WAY ...] [--keep FOLDER] [-o TABLE.md]
+    damaged_meshes.py BIN SHAPE.ply ... [--spheres 60] [--only WAY ...] [--keep FOLDER]
 
 BIN holds fit_shape, synth and compare; a shape is a closed mesh as binary .ply. A row is a shape and a way to damage it;
 its figures are the mean distance between the clean shape and the fit's mesh, in percent of the diagonal, how much that
@@ -9,17 +9,14 @@ is more than for the fit of the clean shape, the seconds of the fit, and what fi
 10 % must be refused, and is then wrapped. Exit status 1 if a damaged shape was not fitted, or the hole of 10 % was.
 """
 
-import argparse
-import json
 import pathlib
-import subprocess
 import sys
 import tempfile
-import time
 
 import numpy as np
 
 from garbled_meshes import Mesh
+from measure import Run, arguments_of, head, row
 
 
 class Shape(Mesh):
@@ -121,85 +118,47 @@ def crossing(shape):
     shape.vertices[moved] += shape.diagonal() * (0.05 * side / np.linalg.norm(side) - 0.02 * normal)
 
 
-WAYS = {
-    "clean": lambda shape: None,
-    "crack": crack,
-    "hole of 1 %": hole(0.01),
-    "hole of 4 %": hole(0.04),
-    "flipped facet": flipped,
-    "all flipped": all_flipped,
-    "doubled facets": doubled,
-    "fin": fin,
-    "T-junctions": t_junctions,
-    "two bodies": two_bodies,
-    "self-intersection": crossing,
-    "hole of 10 %": hole(0.1),
-    "hole of 10 %, --wrap": hole(0.1),
-}
+WAYS = {"clean": lambda shape: None, "crack": crack, "hole of 1 %": hole(0.01), "hole of 4 %": hole(0.04),
+        "flipped facet": flipped, "all flipped": all_flipped, "doubled facets": doubled, "fin": fin,
+        "T-junctions": t_junctions, "two bodies": two_bodies, "self-intersection": crossing,
+        "hole of 10 %": hole(0.1), "hole of 10 %, --wrap": hole(0.1)}  # fmt: skip
 
 
-def fit(arguments, file, folder, options):
-    """The status, the seconds and the words of a fit."""
-    command = [arguments.bin / "fit_shape", file, "-o", folder / "fit.json", "--base-only", "--noise-seeds", "0"]
-    start = time.monotonic()
-    done = subprocess.run([*command, "--spheres", str(arguments.spheres), *options], capture_output=True, text=True, check=False)
-    seconds = time.monotonic() - start
-    return done.returncode, seconds, done.stderr.splitlines()
-
-
-def distance(arguments, clean, folder):
+def distance(given, clean, folder):
     """Mean distance between the clean shape and the fit, in percent of the diagonal."""
-    mesh, result = folder / "fit.ply", folder / "compare.json"
-    synth = [arguments.bin / "synth", folder / "fit.json", "-o", mesh, "--resolution", "200", "--quiet"]
-    subprocess.run(synth, check=True)
-    subprocess.run([arguments.bin / "compare", clean, mesh, "-o", result, "--quiet", "--points", "1000", "--strict"], check=True)
-    return 100 * json.loads(result.read_text())["mean_distance"]
+    mesh = folder / "fit.ply"
+    Run(given.bin / "synth", folder / "fit.json", "-o", mesh, "--resolution", 200, "--quiet")
+    return 100 * Run(given.bin / "compare", clean, mesh, "--json", "--quiet", "--points", 1000, "--strict").json()["mean_distance"]
 
 
-def rows(arguments, clean, folder):
-    base = None
+def measured(given, clean, folder):
+    """Prints the rows of a shape. How many of them are not as they should be."""
+    base, wrong, file = None, 0, folder / "damaged.ply"
     for way, damage in WAYS.items():
-        if arguments.only and way not in ("clean", *arguments.only):
+        if given.only and way not in ("clean", *given.only):
             continue
-        shape, file = Shape(clean), folder / "damaged.ply"
+        shape = Shape(clean)
         damage(shape)
         shape.write(file)
-        if arguments.keep:
-            arguments.keep.mkdir(exist_ok=True)
-            shape.write(arguments.keep / f"{clean.stem}_{way.replace(' ', '_')}.ply")
-        status, seconds, lines = fit(arguments, file, folder, ["--wrap"] if "--wrap" in way else [])
-        refused = way == "hole of 10 %"
-        words = next((line for line in lines if str(file) in line and " x " not in line), "").replace(f"{file}: ", "")
-        if status != 0:
-            yield f"| {clean.stem} | {way} | refused | | {seconds:.1f} | {words} |", refused and status == 2
-            continue
-        error = distance(arguments, clean, folder)
-        base = error if base is None else base
-        yield f"| {clean.stem} | {way} | {error:.4f} | {error - base:+.4f} | {seconds:.1f} | {words} |", not refused
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("shapes", type=pathlib.Path, nargs="+")
-    parser.add_argument("--spheres", type=int, default=60)
-    parser.add_argument("--only", nargs="+", choices=list(WAYS), default=[])
-    parser.add_argument("--keep", type=pathlib.Path, help="keep the damaged meshes here")
-    parser.add_argument("-o", "--output", type=pathlib.Path)
-    arguments = parser.parse_args()
-    table = ["| shape | damage | distance, % | more than clean | s | said |", "|---|---|---|---|---|---|"]
-    print("\n".join(table))
-    wrong = 0
-    with tempfile.TemporaryDirectory() as name:
-        for clean in arguments.shapes:
-            for row, fine in rows(arguments, clean, pathlib.Path(name)):
-                table.append(row)
-                wrong += not fine
-                print(row, flush=True)
-    if arguments.output:
-        arguments.output.write_text("\n".join(table) + "\n")
-    return 1 if wrong else 0
+        if given.keep:
+            given.keep.mkdir(exist_ok=True)
+            shape.write(given.keep / f"{clean.stem}_{way.replace(' ', '_')}.ply")
+        run = Run(given.bin / "fit_shape", file, "-o", folder / "fit.json", "--base-only", "--noise-seeds", 0, "--spheres",
+                  given.spheres, *(["--wrap"] if "--wrap" in way else []), check=False)  # fmt: skip
+        words = next((line for line in run.errors.splitlines() if str(file) in line and " x " not in line), "")
+        cells = ["refused", ""]
+        if run.status == 0:
+            error = distance(given, clean, folder)
+            base = error if base is None else base
+            cells = [f"{error:.4f}", f"{error - base:+.4f}"]
+        wrong += run.status != (2 if way == "hole of 10 %" else 0)
+        row(clean.stem, way, *cells, f"{run.clock:.1f}", words.replace(f"{file}: ", ""))
+    return wrong
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    given = arguments_of(__doc__, "bin", "shapes", spheres=60, only={"nargs": "+", "choices": list(WAYS), "default": []},
+                         keep={"type": pathlib.Path, "help": "keep the damaged meshes here"})  # fmt: skip
+    head("shape", "damage", "distance, %", "more than clean", "s", "said")
+    with tempfile.TemporaryDirectory() as name:
+        sys.exit(1 if sum([measured(given, clean, pathlib.Path(name)) for clean in given.shapes]) else 0)

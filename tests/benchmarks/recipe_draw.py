@@ -100,8 +100,7 @@ def fractal(draw):
     layer = {"type": kind, "amplitude": draw.height(), "frequency": draw.log(0.3, 100) / draw.size}
     layer.update(draw.some({"octaves": draw.integer(1, 12), "gain": draw.uniform(0, 1.2),
                             "lacunarity": draw.uniform(1.3, 4), "scale": draw.vector(0.2, 3),
-                            "bias": [draw.size * c for c in draw.vector(-2, 2)],
-                            "weight": draw.uniform(-1.5, 1.5)}))
+                            "bias": [draw.size * c for c in draw.vector(-2, 2)], "weight": draw.uniform(-1.5, 1.5)}))
     if kind == "worley":
         layer.update(draw.some({"distance": draw.choice(["f1", "f2", "f2-f1"])}))
     else:
@@ -162,15 +161,13 @@ def phasor(draw):
 def gabor(draw):
     lobes = [[draw.integer(1, 12) if draw.chance(0.2) else draw.integer(2, 6), draw.uniform(-0.5, 0.5),
               draw.uniform(-0.5, 0.5), draw.log(1e-3, 1)] for _ in range(draw.integer(1, 6))]
-    return {"type": "gabor", "pixel_size": draw.size * draw.log(3e-4, 0.1),
-            "height_rms": abs(draw.height()) / 5, "lobes": lobes,
-            **draw.some({"impulses_per_kernel": draw.integer(1, 128)})}
+    return {"type": "gabor", "pixel_size": draw.size * draw.log(3e-4, 0.1), "height_rms": abs(draw.height()) / 5,
+            "lobes": lobes, **draw.some({"impulses_per_kernel": draw.integer(1, 128)})}
 
 
 def population(draw):
     least = draw.size * draw.log(0.01, 0.1)
-    number = {"count": draw.integer(0, 400)} if draw.chance(0.7) else {
-        "density": draw.log(0.1, 30) / draw.size**2}
+    number = {"count": draw.integer(0, 400)} if draw.chance(0.7) else {"density": draw.log(0.1, 30) / draw.size**2}
     return {**number, "least_diameter": least, "greatest_diameter": min(least * draw.log(1, 20), 0.6 * draw.size),
             **draw.some({"exponent": draw.uniform(0.01, 10)})}
 
@@ -201,8 +198,7 @@ def craters(draw):
 
 
 def boulders(draw):
-    layer = {"type": "boulders", **draw.some({"smoothing": draw.uniform(0, 1),
-                                              "roughness": draw.uniform(0, 0.5)})}
+    layer = {"type": "boulders", **draw.some({"smoothing": draw.uniform(0, 1), "roughness": draw.uniform(0, 0.5)})}
     if draw.chance(0.8):
         burials = sorted(draw.uniform(0, 1) for _ in range(2))
         layer["population"] = {**population(draw), **draw.some({
@@ -211,8 +207,7 @@ def boulders(draw):
             "least_burial": burials[0], "greatest_burial": burials[1]}
     else:
         longest = draw.size * draw.log(0.05, 0.4)
-        layer["boulders"] = [{"direction": draw.direction(),
-                              "axes": [longest * draw.uniform(0.1, 1) for _ in range(3)],
+        layer["boulders"] = [{"direction": draw.direction(), "axes": [longest * draw.uniform(0.1, 1) for _ in range(3)],
                               **draw.some({"heading": draw.uniform(-360, 360), "tilt": draw.uniform(-180, 180),
                                            "burial": draw.uniform(0, 1)})} for _ in range(draw.integer(1, 5))]
     return layer
@@ -261,6 +256,5 @@ def recipe(number):
               "body": body, "layers": layers}
     if draw.chance(0.15):
         result["erosion"] = {"talus_angle": draw.uniform(1, 85), "iterations": draw.integer(1, 2000),
-                             **draw.some({"density": draw.log(1, 30000),
-                                          "rotation_period": draw.log(1, 100)})}
+                             **draw.some({"density": draw.log(1, 30000), "rotation_period": draw.log(1, 100)})}
     return result, draw.random.randint(30, 60)
