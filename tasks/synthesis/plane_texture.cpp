@@ -113,9 +113,8 @@ PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const P
   const std::size_t colored = first_colored_layer(recipe);
   const bool has_color = colored < recipe.layers.size();
   if (request.content == "color" && !has_color) {
-    throw InputError(file +
-                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the "
-                     "height");
+    throw InputError(
+        file + ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the height");
   }
   const bool colors = has_color && request.content != "height";
   return colors ? drawing.colors(colored) : drawing.heights(first_plane_layer(recipe, file));
