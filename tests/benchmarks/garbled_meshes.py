@@ -44,65 +44,54 @@ class Mesh:
         rows["count"], rows["corners"] = 3, self.faces
         file.write_bytes(header.encode() + self.vertices.astype("<f4").tobytes() + rows.tobytes())
 
+    # Ways to garble it. Of vertices or of faces, `at` are the numbers of those that were chosen.
+    def moved(self, at, chance):
+        """Vertices go to random places of the box."""
+        self.vertices[at] = chance.uniform(self.vertices.min(0), self.vertices.max(0), (len(at), 3))
 
-# Ways to garble a mesh. Of vertices or of faces, `at` are the numbers of those that were chosen.
-def moved(mesh, at, chance):
-    """Vertices go to random places of the box."""
-    mesh.vertices[at] = chance.uniform(mesh.vertices.min(0), mesh.vertices.max(0), (len(at), 3))
+    def exchanged(self, at, chance):
+        """Vertices change places with one another."""
+        self.vertices[at] = self.vertices[chance.permutation(at)]
 
+    def flung(self, at, chance):
+        """Vertices are pushed up to 1e12 times as far out."""
+        self.vertices[at] *= 10 ** chance.uniform(0, 12, (len(at), 1))
 
-def exchanged(mesh, at, chance):
-    """Vertices change places with one another."""
-    mesh.vertices[at] = mesh.vertices[chance.permutation(at)]
+    def flipped(self, at, chance):
+        """A bit of each vertex changes."""
+        self.vertices.view("<u4")[at, chance.integers(3, size=len(at))] ^= np.uint32(1) << chance.integers(32, size=len(at), dtype="u4")
 
+    def joined(self, at, chance):
+        """Vertices become one point."""
+        self.vertices[at] = self.vertices[at[0]]
 
-def flung(mesh, at, chance):
-    """Vertices are pushed up to 1e12 times as far out."""
-    mesh.vertices[at] *= 10 ** chance.uniform(0, 12, (len(at), 1))
+    def flattened(self, at, chance):
+        """Vertices lose their third coordinate."""
+        self.vertices[at, 2] = 0
 
+    def rewired(self, at, chance):
+        """Corners of faces become random vertices."""
+        self.faces[at, chance.integers(3, size=len(at))] = chance.integers(len(self.vertices), size=len(at))
 
-def flipped(mesh, at, chance):
-    """A bit of each vertex changes."""
-    mesh.vertices.view("<u4")[at, chance.integers(3, size=len(at))] ^= np.uint32(1) << chance.integers(32, size=len(at), dtype="u4")
+    def beyond(self, at, chance):
+        """Corners of faces become numbers that no vertex has."""
+        self.faces[at, chance.integers(3, size=len(at))] = chance.choice([-1, 2**31 - 1, 3 * len(self.vertices)], len(at))
 
+    def dropped(self, at, chance):
+        """Faces are missing."""
+        self.faces = np.delete(self.faces, at, axis=0)
 
-def joined(mesh, at, chance):
-    """Vertices become one point."""
-    mesh.vertices[at] = mesh.vertices[at[0]]
+    def turned(self, at, chance):
+        """Faces look inwards."""
+        self.faces[at] = self.faces[at][:, ::-1]
 
-
-def flattened(mesh, at, chance):
-    """Vertices lose their third coordinate."""
-    mesh.vertices[at, 2] = 0
-
-
-def rewired(mesh, at, chance):
-    """Corners of faces become random vertices."""
-    mesh.faces[at, chance.integers(3, size=len(at))] = chance.integers(len(mesh.vertices), size=len(at))
-
-
-def beyond(mesh, at, chance):
-    """Corners of faces become numbers that no vertex has."""
-    mesh.faces[at, chance.integers(3, size=len(at))] = chance.choice([-1, 2**31 - 1, 3 * len(mesh.vertices)], len(at))
-
-
-def dropped(mesh, at, chance):
-    """Faces are missing."""
-    mesh.faces = np.delete(mesh.faces, at, axis=0)
-
-
-def turned(mesh, at, chance):
-    """Faces look inwards."""
-    mesh.faces[at] = mesh.faces[at][:, ::-1]
+    def doubled(self, at, chance):
+        """Faces are there twice."""
+        self.faces = np.concatenate([self.faces, self.faces[at]])
 
 
-def doubled(mesh, at, chance):
-    """Faces are there twice."""
-    mesh.faces = np.concatenate([mesh.faces, mesh.faces[at]])
-
-
-WAYS = (moved, exchanged, flung, flipped, joined, flattened, rewired, beyond, dropped, turned, doubled)
-OF_FACES = (rewired, beyond, dropped, turned, doubled)
+OF_FACES = (Mesh.rewired, Mesh.beyond, Mesh.dropped, Mesh.turned, Mesh.doubled)
+WAYS = (Mesh.moved, Mesh.exchanged, Mesh.flung, Mesh.flipped, Mesh.joined, Mesh.flattened, *OF_FACES)
 
 
 def programs(bin_folder, folder, mesh, whole):

@@ -14,8 +14,7 @@ These are the scores of fit_gabor (estimation/gabor/exemplar/texture_score.h). T
 
     real          the seen square itself
     random phase  its periodic component (Moisan 2011) with the phases of white noise (Galerne et al. 2011)
-    blending      tiling and blending in the plane (Heitz and Neyret 2018): a triangle lattice of the side
-                  n / (2 sqrt(3)), the linear weights of the paper, and the periodic component as the input
+    blending      tiling and blending of its periodic component in the plane (Heitz and Neyret 2018)
     gabor, phase, exemplar  fit_gabor --model, then synth --texture
     auto          whichever of them fit_gabor --model auto takes for the seen square
 
