@@ -3,11 +3,10 @@
 #include "apps/program.h"
 
 int main(int argc, char** argv) {
-  astrolith::Program program("gravity",
-                             "Computes gravitational potential, acceleration, geopotential, slope and "
-                             "elevation of a body of uniform "
-                             "density that turns: at its facets, at its vertices, or at points inside and "
-                             "outside. Prints mass, moments "
-                             "and gravity harmonics as JSON.");
+  astrolith::Program program(
+      "gravity",
+      "Computes gravitational potential, acceleration, geopotential, slope and elevation of a body of "
+      "uniform density that turns: at its facets, at its vertices, or at points inside and outside. Prints "
+      "mass, moments and gravity harmonics as JSON.");
   return program.run(argc, argv, astrolith::declare_gravity(program));
 }

@@ -26,9 +26,8 @@ class Program : public Job {
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
   // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. Work that ends
-  // after Ctrl-C without an exception has kept its best so far and gives 3. The summary is
-  // written only when the work is done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best
-  // result so far.
+  // after Ctrl-C without an exception has kept its best so far and gives 3. The summary is written only when
+  // the work is done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best result so far.
   int run(int argc, char** argv, const std::function<void()>& work);
 
   // Draws a bar labelled with the stage while stderr is a terminal and --quiet is not given; asks the work to

@@ -22,7 +22,7 @@ Matrix3 inertia_of(const Matrix3& second) {
   return inertia;
 }
 
-// Sums of R_lm without the sign of Condon and Shortley, l <= degree, at the place l (l + 1) / 2 + m.
+// Sums of R_lm without the sign of Condon and Shortley, l <= degree, at the index l (l + 1) / 2 + m.
 struct RegularSums {
   explicit RegularSums(int n) : degree(n), values(count(n)) {}
   static std::size_t count(int n) { return static_cast<std::size_t>((n + 1) * (n + 2) / 2); }

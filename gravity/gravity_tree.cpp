@@ -69,7 +69,7 @@ void measure_node(const GravityTree& tree, GravityNode& node) {
   }
 }
 
-// The places of all harmonics to an order.
+// The indices of all harmonics to an order.
 std::vector<std::size_t> places_to(int order) {
   std::vector<std::size_t> places;
   for (int m = 0; m <= order; ++m) {
@@ -78,7 +78,7 @@ std::vector<std::size_t> places_to(int order) {
   return places;
 }
 
-// The rule is exact for harmonics to `order`, whose places are given.
+// The rule is exact for harmonics to `order`, whose indices are given.
 struct Expansion {
   int order;
   std::vector<TrianglePoint> rule;

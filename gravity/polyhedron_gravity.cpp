@@ -18,7 +18,7 @@ constexpr int kCrudeOrder = 3;
 constexpr double kRoughOpening = 0.7;  // radius of a node over its distance
 constexpr double kLeastAcceleration = 0.05;
 
-// Points in the tables' units, and their places in the caller's array.
+// Points in the tables' units, and their indices in the caller's array.
 struct Target {
   Vec3d point;
   std::uint32_t place;

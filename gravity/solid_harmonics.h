@@ -14,7 +14,7 @@ namespace astrolith {
 constexpr int kMostOrder = 10;
 constexpr int kHarmonics = (kMostOrder + 1) * (kMostOrder + 2) / 2;
 
-// The place of l, m among the stored ones, 0 <= m <= l <= kMostOrder. All l of one m follow each other.
+// The index of l, m among the stored ones, 0 <= m <= l <= kMostOrder. All l of one m follow each other.
 constexpr int harmonic_index(int l, int m) { return m * (kMostOrder + 1) - m * (m - 1) / 2 + (l - m); }
 
 struct HarmonicValue {

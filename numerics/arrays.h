@@ -16,7 +16,7 @@
 
 namespace astrolith {
 
-// The place of an array of `count` values in a store.
+// Where an array of `count` values lies in a store.
 template <typename T>
 struct ArrayRange {
   std::uint32_t first = 0;  // in units of kArrayAlignment bytes from the store's begin

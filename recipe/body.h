@@ -56,7 +56,7 @@ constexpr std::string_view kernel_word(Kernel kernel) {
 // A group of spheres that layers can be tied to.
 struct SphereGroup {
   std::string name;
-  std::vector<int> spheres;  // places in MetaballBody::spheres from 0: at least one, each at most once
+  std::vector<int> spheres;  // indices in MetaballBody::spheres from 0: at least one, each at most once
 };
 
 // How a body is combined with another (thesis 2.2). Both are given by their signed distances f and g,

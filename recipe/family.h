@@ -55,7 +55,7 @@ double greatest_of(const DrawnField& drawn);
 
 struct Recipe;
 
-// Sets numbers of the recipe: the fields and their numbers, in one order. Returns the place in `fields` of
+// Sets numbers of the recipe: the fields and their numbers, in one order. Returns the index in `fields` of
 // the first that names no number of the recipe, or -1. A field that the recipe leaves out with all of its
 // object, such as "erosion.talus_angle" without an erosion, names none. A whole number is needed where the
 // field is one: throws InputError "recipe: layers[0].octaves: ..." for others.

@@ -87,7 +87,7 @@ class FieldVisitor {
 
   bool reading() const { return task_ == Task::kRead; }
   bool checking() const { return task_ == Task::kCheck; }
-  // The place of the object or value that is being visited.
+  // The path of the object or value that is being visited.
   const Place& place() const { return *place_; }
 
   // A field that keeps its default when the file lacks it. The field is always written, except for an empty

@@ -101,10 +101,9 @@ void check_spot_reach(const SpotLayer& layer, const Place& place) {
   const double cells = layer.size * extent / (layer.cell_size * least_height(layer.lattice));
   if (cells <= kMaxSpotCells) return;
   place.field("cell_size")
-      .fail(fmt::format(
-          "a spot's half axis size * sqrt(sigma * variance), and that of each of its parts, must be "
-          "at most {:g} cells, is {:.3g}; use larger cells or smaller spots",
-          kMaxSpotCells, cells));
+      .fail(fmt::format("a spot's half axis size * sqrt(sigma * variance), and that of each of its parts, "
+                        "must be at most {:g} cells, is {:.3g}; use larger cells or smaller spots",
+                        kMaxSpotCells, cells));
 }
 
 void check_spot_density(const SpotLayer& layer, const Place& place) {

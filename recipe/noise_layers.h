@@ -71,8 +71,8 @@ struct LayerUse {
 using LayerSeed = std::optional<int>;
 inline constexpr int kMaxLayerSeed = (1 << 30) - 1;
 
-// The number that a layer's random numbers depend on beside the recipe's seed. `index` is the layer's place
-// in the list, below kMaxLayerSeed. Layers with and without a seed have different numbers.
+// The number that a layer's random numbers depend on beside the recipe's seed. `index` is that of the
+// layer in the list, below kMaxLayerSeed. Layers with and without a seed have different numbers.
 constexpr int layer_number(const LayerSeed& seed, int index) {
   return seed ? kMaxLayerSeed + 1 + *seed : index;
 }

@@ -1,4 +1,4 @@
-// The place of a value in a recipe, for error messages: "rock.json: layers[0].lobes[3].bandwidth".
+// The path of a value in a recipe, for error messages: "rock.json: layers[0].lobes[3].bandwidth".
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace astrolith {
 
-// Places form a chain on the stack, so that walking a recipe allocates nothing. A place points to its parent,
-// which must outlive it.
+// A step of a path. Steps form a chain on the stack, so that walking a recipe allocates nothing. A step
+// points to its parent, which must outlive it.
 class Place {
  public:
-  // The place of the recipe as a whole. `file_name` must outlive the place.
+  // The recipe as a whole. `file_name` must outlive the step.
   explicit Place(const std::string& file_name) : file_name_(&file_name) {}
 
   Place field(std::string_view name) const { return {*file_name_, this, name, -1}; }

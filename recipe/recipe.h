@@ -140,7 +140,7 @@ inline const LayerMask* mask_of(const Layer& layer) { return mask_of(const_cast<
 // landforms, "craters", "boulders" or "population".
 std::string_view height_field(const Layer& layer);
 
-// The place of the last layer of this name in the list, or -1.
+// The index of the last layer of this name in the list, or -1.
 int find_layer(std::span<const Layer> layers, const std::string& name);
 
 // Thermal erosion of the finished surface (thesis eq. 5.12): material slides down until no slope is steeper

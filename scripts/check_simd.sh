@@ -6,10 +6,9 @@ cd "$(dirname "$0")/.."
 
 resolution=${1:-40}
 levels=(scalar x86-64-v3 ordinary)
-launcher=()
-command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 for level in "${levels[@]}"; do
-  cmake --preset synth-only -B "build/simd/$level" -DASTROLITH_SIMD="${level#ordinary}" -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF "${launcher[@]}" >/dev/null
+  cmake --preset synth-only -B "build/simd/$level" -DASTROLITH_SIMD="${level#ordinary}" -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF >/dev/null
   cmake --build "build/simd/$level" --target synth -- -j2 >/dev/null
 done
 grep -o -m1 avx512vl /proc/cpuinfo || echo "no AVX-512 here: it is not compared"

@@ -5,9 +5,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh --package
-launcher=()
-command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-cmake --preset release -B build/package -DCMAKE_INSTALL_PREFIX=/usr -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF "${launcher[@]}" >/dev/null
+command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+cmake --preset release -B build/package -DCMAKE_INSTALL_PREFIX=/usr -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF >/dev/null
 cmake --build build/package
 cd build/package
 cpack -G DEB

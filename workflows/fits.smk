@@ -9,6 +9,8 @@
 #   options     further options of fit_shape, such as "--spheres 100 --base-only"
 #   program     fit_shape itself, where it is not in PATH
 import pathlib
+import re
+import subprocess
 
 if "models" not in config:
     raise WorkflowError("state the folder of the shape models: --config models=shapes")
@@ -17,10 +19,11 @@ WORKFLOWS = pathlib.Path(workflow.basedir)
 FOLDER = str(config.get("folder", "fits"))
 PROGRAM = str(config.get("program", "fit_shape"))
 OPTIONS = str(config.get("options", ""))
-FORMATS = {".obj", ".ply", ".stl", ".off", ".tab", ".plt", ".icq", ".bmf"}
-MODELS = {file.name.split(".")[0] if file.name.endswith(".ply.zst") else file.stem: str(file)
-          for file in sorted(pathlib.Path(config["models"]).iterdir())
-          if file.suffix in FORMATS or file.name.endswith(".ply.zst")}
+# The extensions of the meshes that the program reads, as its help names them.
+HELP = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
+FORMATS = set(re.findall(r"\.\w+", re.search(r"mesh of a closed body \((.*?)\)", HELP)[1]))
+FILES = {file: pathlib.PurePath(file.name.removesuffix(".zst")) for file in sorted(pathlib.Path(config["models"]).iterdir())}
+MODELS = {name.stem: str(file) for file, name in FILES.items() if name.suffix in FORMATS}
 if not MODELS:
     raise WorkflowError(f"{config['models']}: holds no shape model ({' '.join(sorted(FORMATS))})")
 

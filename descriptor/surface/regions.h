@@ -1,5 +1,4 @@
-// Regions of a surface: what a permutation test exchanges, and how far roughness differs between
-// them.
+// Regions of a surface: what a permutation test exchanges, and how far roughness differs between them.
 #pragma once
 
 #include <array>

@@ -121,8 +121,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uin
     const auto i = static_cast<std::size_t>(index);
     CounterRandom random(seed, i);
     const auto found = std::upper_bound(areas.begin(), areas.end(), areas.back() * random.uniform());
-    // Rounding may push the drawn area onto the total. The last triangle with an area then takes the
-    // sample.
+    // Rounding may push the drawn area onto the total. The last triangle with an area then takes the sample.
     const auto t = static_cast<std::size_t>(
         (found == areas.end() ? std::lower_bound(areas.begin(), areas.end(), areas.back()) : found) -
         areas.begin());

@@ -38,11 +38,10 @@ class SurfaceTree {
 
   // The distance of p from the surface: positive inside, zero on the surface, negative outside. The mesh must
   // be closed, oriented and welded. The pseudo-normal decides the sign, which is right at edges and vertices
-  // too (Baerentzen and Aanaes 2005).
-  // Up to 64 components that overlap, all wound outwards, count as their union: a contact binary whose lobes
-  // reach into one another. A wall inside another component then bounds nothing. Inside the overlap the
-  // result is the distance to the wall of the farther component, which is never too large. Where the wall of
-  // a cavity is wound inwards, components must not overlap.
+  // too (Baerentzen and Aanaes 2005). Up to 64 components that overlap, all wound outwards, count as their
+  // union: a contact binary whose lobes reach into one another. A wall inside another component then bounds
+  // nothing. Inside the overlap the result is the distance to the wall of the farther component, which is
+  // never too large. Where the wall of a cavity is wound inwards, components must not overlap.
   double signed_distance(const Vec3d& p) const;
 
  private:

@@ -6,7 +6,7 @@ import dataclasses
 import os
 import sys
 import warnings
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional
 
 import numpy as np
 import numpy.typing as npt

@@ -230,8 +230,8 @@ ASTROLITH_HD inline double least_component(double b, const MetaballSphere<float>
   return 2.0 * b * inverse * (dot(box.center - c, box.direction) - box.spread);
 }
 
-// A lower bound of |sum_i w_i grad log f_i| / m over the spheres that add, with the weights
-// w_i = f_i / (P + floor (1 + N)). It is the larger of two bounds of the sum's component along one direction:
+// A lower bound of |sum_i w_i grad log f_i| / m over the spheres that add, with the weights w_i = f_i / (P +
+// floor (1 + N)). It is the larger of two bounds of the sum's component along one direction:
 //   - the sum of the least components d_i, each with the least weight if d_i > 0, else with the largest;
 //   - the least d_i times the least sum of the weights, which is 1 minus the floor's own weight.
 ASTROLITH_HD inline double smallest_added_gradient(const BodyIntervals& bounds, double b,

@@ -41,8 +41,8 @@ double normal_quantile(double p) {
          (((((kB[0] * r + kB[1]) * r + kB[2]) * r + kB[3]) * r + kB[4]) * r + 1.0);
 }
 
-// The share of a normal distribution below z, for |z| <= 6: the sum of its series
-// 1/2 + density(z) (z + z^3 / 3 + z^5 / (3 5) + ...), whose terms have one sign.
+// The share of a normal distribution below z, for |z| <= 6: the sum of its series 1/2 + density(z) (z + z^3 /
+// 3 + z^5 / (3 5) + ...), whose terms have one sign.
 double normal_share(double z) {
   double term = z, sum = z;
   for (int k = 3; k < 200 && std::fabs(term) > 1e-17 * std::fabs(sum); k += 2) {

@@ -24,7 +24,7 @@ struct FieldModel {
   ArrayStore arrays;
   BodyTables body;
   std::vector<FieldLayer> layers;  // in the recipe's order, without boulders
-  std::vector<int> recipe_layers;  // the place in the recipe of each of these layers
+  std::vector<int> recipe_layers;  // the index in the recipe of each of these layers
   std::vector<ImpulseList> spot_lists, gabor_lists;
   std::vector<std::uint32_t> crater_layers;
   std::vector<FieldBoulder> boulders;  // boulders on the surface that the layers make

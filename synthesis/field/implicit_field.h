@@ -53,7 +53,7 @@ struct PatchCube {
 // A part of a layer that is too fine for the coordinates that the field is evaluated in, or the landforms of
 // a layer that are too many for a whole body.
 struct LayerLeftOut {
-  int layer = 0;                // the layer's place in the recipe; -1: the body's warp
+  int layer = 0;                // the layer's index in the recipe; -1: the body's warp
   double variance_share = 0.0;  // share in the variance that the whole layer would have, (0, 1]
   double finest = 0.0;          // shortest wave, narrowest cell or least landform of the layer, length units
   double landforms = 0.0;       // of a population drawn by cells: how many the whole body would have more
@@ -66,7 +66,7 @@ using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
 // F with the body and the layers up to one of them, as its layers are added one after another: first the bare
 // body, then all layers but boulders in the order of the recipe, then the layers of boulders.
 struct FieldStage {
-  int layer;                     // the place in the recipe of the layer that was added; -1: the bare body
+  int layer;                     // the index in the recipe of the layer that was added; -1: the bare body
   bool is_boulders;              // whether it is a layer of boulders
   std::span<const float> value;  // F at some points
 };
@@ -199,7 +199,7 @@ class ImplicitField {
   // Seconds of one processor to draw a brick of each list, from bricks that its cache holds.
   std::vector<double> gabor_brick_seconds() const;
 
-  // The place in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
+  // The index in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
   std::span<const int> recipe_layers() const;
 
   // The field's tables, for evaluation on a GPU. They live as long as the field.

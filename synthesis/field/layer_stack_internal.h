@@ -24,8 +24,8 @@ struct StackState {
   FieldModel& model;
   MaskPlan masks;
   Box supports;                             // of the body's kernels; no surface lies outside
-  int index = 0;                            // place in the recipe of the layer that is added
-  std::map<int, std::size_t> numbers = {};  // number in the model of each layer with heights, by its place
+  int index = 0;                            // index in the recipe of the layer that is added
+  std::map<int, std::size_t> numbers = {};  // number in the model of each layer with heights, by its index
 
   StackState(const Recipe& of_layers, const std::string& recipe_name, FieldModel& of_body);
 
@@ -96,7 +96,7 @@ class PatchNoises {
  private:
   struct PatchLayer {
     std::size_t layer;  // number in the model
-    int index;          // place in the recipe
+    int index;          // index in the recipe
     double displaced;   // bound of the displacement of its coordinates, length units
     LayerMaker maker;
   };
@@ -127,7 +127,7 @@ class StackLandforms {
  private:
   struct BoulderLayerAt {
     const BoulderLayer* layer;
-    int index;  // place in the recipe
+    int index;  // index in the recipe
   };
 
   void add_patch_craters(const CraterLayer& layer, const CraterRelief& relief,

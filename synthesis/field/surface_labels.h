@@ -26,9 +26,8 @@ class SurfaceLabels {
 
   // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. The origin is the
   // centre of the patch, if there is one. Elevations are above the bare body, in length units. Both spans
-  // have one size.
-  // If `ground` is not empty, ground[i] becomes F of the body without its boulders at the point, length
-  // units.
+  // have one size. If `ground` is not empty, ground[i] becomes F of the body without its boulders at the
+  // point, length units.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
              std::span<float> ground = {}) const;
 

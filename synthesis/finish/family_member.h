@@ -19,7 +19,7 @@ struct FamilyMember {
 };
 
 // Member `number` of the recipe's family, a function of both alone: its seed is drawn from the recipe's seed
-// and the number, and each field from that seed and its place in the list, so that a field that comes later
+// and the number, and each field from that seed and its index in the list, so that a field that comes later
 // changes none before it. The number is the seed of a recipe without a family. Throws InputError
 // "recipe: field: ..." where the drawn numbers break a rule together.
 FamilyMember family_member(const Recipe& recipe, std::uint64_t number);

@@ -53,7 +53,7 @@ struct FinishRequest {
 
 // A layer that was added; lengths in the recipe's unit.
 struct FinishLayer {
-  int layer = 0;  // its place in the recipe
+  int layer = 0;  // its index in the recipe
   KnownLandforms known;
   double least = 0.0, greatest = 0.0;
   double density = 0.0;        // of these sizes, per squared length unit

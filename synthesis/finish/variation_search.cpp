@@ -117,10 +117,9 @@ class Search {
   [[noreturn]] void refuse() const {
     const std::string which = "variation " + std::to_string(seed_) + ": ";
     if (!most_similar_) {
-      throw InputError(
-          which +
-          "whatever its strength, it falls into another number of pieces than the body, or is no "
-          "other body; take another number");
+      throw InputError(which +
+                       "whatever its strength, it falls into another number of pieces than the body, or is "
+                       "no other body; take another number");
     }
     const double largest = std::floor(*most_similar_ * 1e4 - 1e-6) * 1e-4;
     throw InputError(which + "no other body with a similarity of " + printed("%.6g", least_similarity_) +

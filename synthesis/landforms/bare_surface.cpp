@@ -58,9 +58,8 @@ Vec3d BareSurface::last_crossing(const Vec3d& direction, const std::string& wher
   int first = 0;
   while (first <= kRaySamples && !body_.inside(at(first))) ++first;
   if (first == 0 || first > kRaySamples) {
-    throw InputError(where +
-                     ": the ray from the origin along it does not leave the bare body; give a "
-                     "position instead");
+    throw InputError(
+        where + ": the ray from the origin along it does not leave the bare body; give a position instead");
   }
   Vec3d in = at(first), out = at(first - 1);
   for (int halving = 0; halving < 40; ++halving) {

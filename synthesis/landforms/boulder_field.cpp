@@ -53,7 +53,7 @@ void turn(const Vec3d& upright, PlacedBoulder& boulder) {
 struct Placement {
   Vec3d bare;  // on the bare surface
   PlacedBoulder boulder;
-  std::optional<std::uint32_t> noise_seed = std::nullopt;  // absent: from the place in the list
+  std::optional<std::uint32_t> noise_seed = std::nullopt;  // absent: from the index in the list
 };
 
 void find_listed(const BoulderLayer& layer, const BareSurface& surface, const std::string& where,
@@ -85,7 +85,7 @@ void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t s
     boulder.tilt = population.greatest_tilt * random.uniform(-1.0, 1.0);
     boulder.burial = random.uniform(population.least_burial, population.greatest_burial);
     out.push_back({drawn.position, boulder});
-    // The place in the list of a boulder that is drawn by cells depends on the region.
+    // The index in the list of a boulder that is drawn by cells depends on the region.
     if (population.drawn.by_cells) out.back().noise_seed = static_cast<std::uint32_t>(random.next());
   }
 }

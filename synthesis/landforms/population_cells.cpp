@@ -144,10 +144,8 @@ class CellDrawing {
   static bool valid(const Box& b) { return b.min.x <= b.max.x && b.min.y <= b.max.y && b.min.z <= b.max.z; }
 
   [[noreturn]] static void fail(const std::string& where, const char* what) {
-    throw InputError(
-        fmt::format("{}.density: would {} here; lower it, raise least_diameter, or make a "
-                    "smaller patch",
-                    where, what));
+    throw InputError(fmt::format(
+        "{}.density: would {} here; lower it, raise least_diameter, or make a smaller patch", where, what));
   }
 
   // The box on the bare surface where landforms of a class matter to the region: the feet of the points
@@ -246,10 +244,10 @@ std::vector<DrawnLandform> draw_population_by_cells(const Population& population
                                                     const std::string& where, const DrawingPlaces& places) {
   const double most = kGreatestByCells * surface.longest_side();
   if (population.greatest_diameter > most) {
-    throw InputError(fmt::format(
-        "{}.greatest_diameter: is {:.4g}, and landforms drawn by cells are at most 1/32 of the body, {:.4g}; "
-        "lower it, or leave out by_cells",
-        where, population.greatest_diameter, most));
+    throw InputError(
+        fmt::format("{}.greatest_diameter: is {:.4g}, and landforms drawn by cells are at most 1/32 of the "
+                    "body, {:.4g}; lower it, or leave out by_cells",
+                    where, population.greatest_diameter, most));
   }
   std::vector<DrawnLandform> landforms;
   if (*population.density == 0.0) return landforms;

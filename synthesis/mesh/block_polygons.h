@@ -179,7 +179,7 @@ inline constexpr std::size_t kVerticesPerBatch = 252;
 struct VertexBatch {
   std::size_t size = 0;
   std::array<MeshVertex, kVerticesPerBatch> vertices;
-  std::array<std::uint32_t, kVerticesPerBatch> slots;  // places in the array of the layer
+  std::array<std::uint32_t, kVerticesPerBatch> slots;  // indices in the array of the layer
   PointBatch<4 * kVerticesPerBatch> points;
 };
 

@@ -136,7 +136,7 @@ class MarksPainter {
     text(left, length_digits(length) + (unit.empty() ? "" : " " + unit));
   }
 
-  // Words to the upper right of a place, on a dark ground.
+  // Words to the upper right of a place, on a dark background.
   void label(double px, double py, const std::string& words) {
     const int left = rounded(px) + 4 * dot_, top = rounded(py) - 12 * dot_;
     fill_rectangle(image_, left - 2 * dot_, top - dot_, text_width(words, dot_) + 4 * dot_, 10 * dot_,

@@ -37,21 +37,19 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
       .required()
       .placeholder("MESH")
       .reads();
-  app.add_option(
-         "-o,--output", arguments.output,
-         "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with --surface "
-         "the figures (.json) or the values at every place (.csv)")
+  app.add_option("-o,--output", arguments.output,
+                 "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with "
+                 "--surface the figures (.json) or the values at every place (.csv)")
       .required()
       .placeholder("H.npy")
       .writes();
   arguments.options.add_to(app);
   arguments.repair.add_to(app, false);
   arguments.device.add_to(app);
-  const Option surface =
-      app.add_flag("--surface", arguments.surface,
-                   "in place of the histogram: how rough the surface is within 3, 6, 12 and 24 mean edges of "
-                   "places all over "
-                   "it, whether bumps or pits stand out, how steep it is, and how far its regions differ");
+  const Option surface = app.add_flag(
+      "--surface", arguments.surface,
+      "in place of the histogram: how rough the surface is within 3, 6, 12 and 24 mean edges of places all "
+      "over it, whether bumps or pits stand out, how steep it is, and how far its regions differ");
   arguments.surface_options.add_to(app, surface);
 }
 

@@ -45,10 +45,9 @@ void add_options(Job& job, Arguments& a) {
       .placeholder("FILE")
       .writes();
   app.add_option("--density", a.density, "kg/m3, of the whole body").placeholder("N").default_text("");
-  app.add_option(
-         "--density-of", a.parts,
-         "closed parts inside the body with densities of their own, in the body's unit and frame: lobes, "
-         "boulders, a core, a cavity of 0")
+  app.add_option("--density-of", a.parts,
+                 "closed parts inside the body with densities of their own, in the body's unit and frame: "
+                 "lobes, boulders, a core, a cavity of 0")
       .placeholder("FILE=N,FILE=N ...")
       .default_text("")
       .reads(files_of_parts);
@@ -82,10 +81,9 @@ void add_options(Job& job, Arguments& a) {
   app.add_option("--resolution", a.resolution, "cells along the longest side of a recipe's body")
       .check(in_range(8, 4096));
   declare_sites_options(app, a.sites);
-  app.add_option(
-         "--preview", a.preview,
-         "also a picture in colours, with a bar; with --sites it has one view from above of each of the "
-         "first nine sites, whose ground is orange and carries the site's number")
+  app.add_option("--preview", a.preview,
+                 "also a picture in colours, with a bar; with --sites it has one view from above of each of "
+                 "the first nine sites, whose ground is orange and carries the site's number")
       .placeholder("FILE.png")
       .writes();
   app.add_option("--color", a.color, "what the colours of the picture say")

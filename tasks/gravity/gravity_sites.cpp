@@ -37,15 +37,13 @@ void write_list(const nlohmann::ordered_json& sites, const std::filesystem::path
 }  // namespace
 
 void declare_sites_options(OptionTable& app, SitesRequest& request) {
-  Option sites =
-      app.add_option(
-             "--sites", request.count,
-             "also the N best places to land, by the mean slope of a square of ground, its roughness "
-             "about the plane that fits it best, and their distance from one another; in the result, and "
-             "as --patch for synth")
-          .check(in_range(1, 1000))
-          .placeholder("N")
-          .default_text("");
+  Option sites = app.add_option("--sites", request.count,
+                                "also the N best places to land, by the mean slope of a square of ground, "
+                                "its roughness about the plane that fits it best, and their distance from "
+                                "one another; in the result, and as --patch for synth")
+                     .check(in_range(1, 1000))
+                     .placeholder("N")
+                     .default_text("");
   app.add_option("--site-size", request.side, "side of a site's square, in the body's unit")
       .needs(sites)
       .placeholder("L")

@@ -9,15 +9,14 @@
 namespace astrolith {
 
 void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
-  const Option refuse = app.add_flag("--strict", strict,
-                                     of_bodies ? "refuse a mesh that is not closed, in place of its repair"
-                                               : "take a mesh as it is, in place of the repair of its cracks "
-                                                 "and small holes");
-  app.add_flag(
-         "--wrap", wrap,
-         "where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of it, "
-         "or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
-         "without faces (.xyz) are wrapped, too")
+  const Option refuse =
+      app.add_flag("--strict", strict,
+                   of_bodies ? "refuse a mesh that is not closed, in place of its repair"
+                             : "take a mesh as it is, in place of the repair of its cracks and small holes");
+  app.add_flag("--wrap", wrap,
+               "where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of "
+               "it, or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
+               "without faces (.xyz) are wrapped, too")
       .excludes(refuse);
   if (!of_bodies) return;
   app.add_flag("--all-parts", all_parts,

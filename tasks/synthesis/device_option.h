@@ -23,10 +23,9 @@ struct DeviceOption {
   std::string device = "auto";
 
   void add_to(OptionTable& app) {
-    app.add_option(
-           "--device", device,
-           "what computes: cuda, the first GPU; cpu; auto, the GPU where there is one. The bytes of the "
-           "result are meant to be the same, which a twin on the host is tested for")
+    app.add_option("--device", device,
+                   "what computes: cuda, the first GPU; cpu; auto, the GPU where there is one. The bytes of "
+                   "the result are meant to be the same, which a twin on the host is tested for")
         .check(one_of({"auto", "cpu", "cuda"}));
   }
 

@@ -41,13 +41,12 @@ void PictureOptions::add_to(OptionTable& app) {
       .placeholder("WxH (default 1280x960)")
       .default_text("");
   app.add_option("--picture-bits", bits, "bits of a channel of the picture").check(one_of({8, 16}));
-  app.add_option(
-         "--camera", cameras,
-         "a camera, in words with their numbers: lat and lon in degrees, or from X Y Z, where it stands "
-         "over the body; roll in degrees; up X Y Z; target X Y Z, what it looks at (default the middle "
-         "of the mesh); with fov in degrees across the view a pinhole, whose distance is in lengths of "
-         "the mesh or radii in radii of the mesh (default as the mesh needs), or which stands at X Y Z; "
-         "may be given several times")
+  app.add_option("--camera", cameras,
+                 "a camera, in words with their numbers: lat and lon in degrees, or from X Y Z, where it "
+                 "stands over the body; roll in degrees; up X Y Z; target X Y Z, what it looks at (default "
+                 "the middle of the mesh); with fov in degrees across the view a pinhole, whose distance is "
+                 "in lengths of the mesh or radii in radii of the mesh (default as the mesh needs), or which "
+                 "stands at X Y Z; may be given several times")
       .repeated()
       .placeholder("\"lat 20 lon 45 fov 30 radii 4\"")
       .default_text("");
@@ -143,10 +142,10 @@ void PictureOptions::write(const Job& job, const RenderedPicture& picture,
                            const std::filesystem::path& file) const {
   write_png(picture.image, bits, background == "transparent", file);
   for (const std::size_t view : picture.empty_views) {
-    job.say(fmt::format(
-        "note: {}: the body covers no pixel of view {}; change the target of its camera, or bring a pinhole "
-        "nearer",
-        file.string(), view + 1));
+    job.say(
+        fmt::format("note: {}: the body covers no pixel of view {}; change the target of its camera, or "
+                    "bring a pinhole nearer",
+                    file.string(), view + 1));
   }
 }
 

@@ -12,13 +12,13 @@
 namespace astrolith {
 namespace {
 
-// The place of the first layer with a colour; the number of layers where none has one.
+// The index of the first layer with a colour; the number of layers where none has one.
 std::size_t first_colored_layer(const Recipe& recipe) {
   const auto found = std::find_if(recipe.layers.begin(), recipe.layers.end(), has_color);
   return static_cast<std::size_t>(found - recipe.layers.begin());
 }
 
-// The place of the first layer that a plane can show.
+// The index of the first layer that a plane can show.
 std::size_t first_plane_layer(const Recipe& recipe, const std::string& file) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     if (traits_of(recipe.layers[i]).in_plane) return i;
@@ -113,9 +113,8 @@ PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const P
   const std::size_t colored = first_colored_layer(recipe);
   const bool has_color = colored < recipe.layers.size();
   if (request.content == "color" && !has_color) {
-    throw InputError(file +
-                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the "
-                     "height");
+    throw InputError(
+        file + ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the height");
   }
   const bool colors = has_color && request.content != "height";
   return colors ? drawing.colors(colored) : drawing.heights(first_plane_layer(recipe, file));

@@ -33,10 +33,9 @@ void add_options(Job& job, Arguments& a) {
   OptionTable& app = job.options;
   app.add_option("shape", a.shape, "mesh (" + read_mesh_words() + ")").required().placeholder("MESH").reads();
   app.add_option("-o,--output", a.output, "the picture").required().placeholder("FILE.png").writes();
-  Option color = app.add_option(
-      "--color", a.color,
-      "colours by this property of the vertices of a .ply, such as slope_deg of gravity -o, with "
-      "a bar below the views");
+  Option color = app.add_option("--color", a.color,
+                                "colours by this property of the vertices of a .ply, such as slope_deg of "
+                                "gravity -o, with a bar below the views");
   color.placeholder("NAME");
   app.add_option("--range", a.range, "the values at the ends of the bar (default: 1st and 99th percentile)")
       .expected(2)

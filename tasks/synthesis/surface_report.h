@@ -42,8 +42,8 @@ struct SurfaceComparison {
 };
 
 // Judges whether b passes for a. Both are sampled at common_points(). `with_floor` adds the verdict on a
-// second sampling of a: a larger p and a smaller distance cannot be expected. The words
-// take `unit` for that of both meshes: "m", "km" or "".
+// second sampling of a: a larger p and a smaller distance cannot be expected. The words take `unit` for that
+// of both meshes: "m", "km" or "".
 SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, SurfaceStatisticsOptions options,
                                  bool with_floor, const std::string& unit, const StageProgress& progress);
 

@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """Renders a mesh by Blender's Cycles and by `render`, with one camera, one sun and Lambert's law, and compares greys.
 
-    blender_picture.py BIN MESH [MESH ...] -o found.json
+    blender_picture.py BIN MESH.obj [MESH.obj ...]
 
 BIN holds `render`; `blender` is on the PATH. Both draw the mesh with smooth normals, no ambient light, hard shadows
 of a sun of 1.5 degrees radius, and an albedo of the `render` program's neutral grey. A difference is that of sRGB
 values in [0, 1], over the pixels that one of the two pictures covers.
 """
-import argparse
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+import numpy as np
+
+from measure import Run, arguments_of
 
 SIZE, FOV = 512, 30.0
 EYE, SUN = (2.2, 2.6, 1.6), (1.0, -0.3, 0.3)
@@ -90,53 +92,27 @@ open(job["found"], "w").write(json.dumps(found))
 """
 
 
-def vertices_of(mesh):
-    """The vertices of an .obj."""
-    import numpy as np
-
-    return np.array([line.split()[1:4] for line in mesh.read_text().splitlines() if line.startswith("v ")], float)
-
-
 def compare(binary, mesh, folder, samples):
-    import numpy as np
-
-    points = vertices_of(mesh)
-    low, high = points.min(0), points.max(0)
-    target = 0.5 * (low + high)
+    points = np.array([line.split()[1:4] for line in mesh.read_text().splitlines() if line.startswith("v ")], float)
+    target = 0.5 * (points.min(0) + points.max(0))
     eye = target + np.array(EYE) * np.linalg.norm(points - target, axis=1).max()
     ours, theirs, found = folder / "ours.png", folder / "theirs.png", folder / "found.json"
-    words = "at {} {} {} target {} {} {} fov {}".format(*eye, *target, FOV)
-    subprocess.run([binary, mesh, "-o", ours, "--quiet", "--camera", words, "--sun-body", *map(str, SUN),
-                    "--picture-size", f"{SIZE}x{SIZE}", "--picture-bits", "16", "--background", "transparent",
-                    "--reflectance", "lambert", "--ambient", "0", "--no-marks"], check=True)  # fmt: skip
+    Run(binary, mesh, "-o", ours, "--quiet", "--camera", "at {} {} {} target {} {} {} fov {}".format(*eye, *target, FOV),
+        "--sun-body", *SUN, "--picture-size", f"{SIZE}x{SIZE}", "--picture-bits", 16, "--background", "transparent",
+        "--reflectance", "lambert", "--ambient", 0, "--no-marks")  # fmt: skip
     script = folder / "scene.py"
     script.write_text(SCENE)
-    job = {"mesh": str(mesh), "ours": str(ours), "picture": str(theirs), "found": str(found), "eye": list(eye), "target": list(target), "sun": SUN,
-           "fov": FOV, "size": SIZE, "samples": samples}  # fmt: skip
-    done = subprocess.run(["blender", "--background", "--factory-startup", "--python", script, "--", json.dumps(job)],
-                          capture_output=True, text=True, check=False)  # fmt: skip
+    job = {"mesh": str(mesh), "ours": str(ours), "picture": str(theirs), "found": str(found), "eye": list(eye),
+           "target": list(target), "sun": SUN, "fov": FOV, "size": SIZE, "samples": samples}  # fmt: skip
+    run = Run("blender", "--background", "--factory-startup", "--python", script, "--", json.dumps(job), check=False)
     if not found.exists():
-        sys.exit(f"Blender compared nothing:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        sys.exit(f"Blender compared nothing:\n{run.output[-2000:]}{run.errors[-2000:]}")
     return {"mesh": mesh.name, **json.loads(found.read_text())}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("meshes", type=pathlib.Path, nargs="+", metavar="MESH.obj")
-    parser.add_argument("-o", "--output", type=pathlib.Path)
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--keep", type=pathlib.Path, help="a folder that keeps the pictures of the last mesh")
-    options = parser.parse_args()
-    rows = []
-    with tempfile.TemporaryDirectory() as name:
-        folder = options.keep or pathlib.Path(name)
-        for mesh in options.meshes:
-            rows.append(compare(options.bin.resolve() / "render", mesh.resolve(), folder, options.samples))
-            print(rows[-1])
-    if options.output:
-        options.output.write_text(json.dumps(rows, indent=1) + "\n")
-
-
 if __name__ == "__main__":
-    main()
+    given = arguments_of(__doc__, "bin", "meshes", samples=64,
+                         keep={"type": pathlib.Path, "help": "a folder that keeps the pictures of the last mesh"})  # fmt: skip
+    with tempfile.TemporaryDirectory() as name:
+        for mesh in given.meshes:
+            print(compare(given.bin.resolve() / "render", mesh.resolve(), given.keep or pathlib.Path(name), given.samples))

@@ -8,10 +8,7 @@ For each mesh and number of bytes `fit_shape --bytes` writes a compact recipe, a
 decimated by quadrics and encoded by Draco at level 10; of all numbers of triangles and bits tried, the file with the
 least error counts. `compare` measures both: the mean distance between the surfaces, both ways, in % of the diagonal.
 """
-import argparse
-import json
 import pathlib
-import subprocess
 import tempfile
 
 import astrolith
@@ -19,23 +16,22 @@ import DracoPy
 import fast_simplification
 import numpy as np
 
+from measure import Run, arguments_of, head, row
+
 
 def mean_distance(programs, target, mesh, samples):
-    result = subprocess.run([programs / "compare", target, mesh, "--samples", str(samples), "--quiet"],
-                            capture_output=True, text=True, check=True)
-    return 100 * json.loads(result.stdout)["mean_distance"]
+    return 100 * Run(programs / "compare", target, mesh, "--samples", samples, "--quiet").json()["mean_distance"]
 
 
 def recipe_error(programs, target, most_bytes, folder):
     recipe, mesh = folder / "body.astro", folder / "body.ply"
-    subprocess.run([programs / "fit_shape", target, "-o", recipe, "--base-only", "--bytes", str(most_bytes), "--quiet"],
-                   check=True)
-    subprocess.run([programs / "synth", recipe, "-o", mesh, "--resolution", "256", "--quiet"], check=True)
+    Run(programs / "fit_shape", target, "-o", recipe, "--base-only", "--bytes", most_bytes, "--quiet")
+    Run(programs / "synth", recipe, "-o", mesh, "--resolution", 256, "--quiet")
     return recipe.stat().st_size, mean_distance(programs, target, mesh, 100000)
 
 
 def most_triangles(vertices, triangles, bits, most_bytes):
-    """The Draco file of the most triangles within the bytes, with its mesh; None if there is none."""
+    """The Draco file of the most triangles within the bytes; None if there is none."""
     best, low, high = None, 20, len(triangles)
     while high - low > max(2, low // 100):
         middle = (low + high) // 2
@@ -49,35 +45,21 @@ def most_triangles(vertices, triangles, bits, most_bytes):
 
 
 def draco_error(programs, target, most_bytes, folder):
-    read = astrolith.read_mesh(target)
+    read, file, found = astrolith.read_mesh(target), folder / "draco.obj", [(0, float("inf"))]
     vertices, triangles = np.asarray(read.vertices, float), np.asarray(read.faces, np.int32)
-    best = (0, float("inf"))
     for bits in range(6, 13):
-        data = most_triangles(vertices, triangles, bits, most_bytes)
-        if data is None:
-            continue
-        mesh = DracoPy.decode(data)
-        file = folder / "draco.obj"
-        astrolith.write_mesh((np.asarray(mesh.points).reshape(-1, 3), np.asarray(mesh.faces).reshape(-1, 3)), file)
-        best = min(best, (len(data), mean_distance(programs, target, file, 20000)), key=lambda pair: pair[1])
-    return best
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("programs", type=pathlib.Path, help="folder of fit_shape, synth and compare")
-    parser.add_argument("meshes", type=pathlib.Path, nargs="+")
-    parser.add_argument("--bytes", type=int, nargs="+", default=[1250], help="sizes of the files")
-    options = parser.parse_args()
-    print("| body | bytes | Draco, mean % | compact recipe, mean % |\n|---|---|---|---|")
-    for mesh in options.meshes:
-        for most_bytes in options.bytes:
-            with tempfile.TemporaryDirectory() as name:
-                draco = draco_error(options.programs, mesh, most_bytes, pathlib.Path(name))
-                ours = recipe_error(options.programs, mesh, most_bytes, pathlib.Path(name))
-            print(f"| {mesh.stem} | {most_bytes} | {draco[1]:.4f} ({draco[0]} B) | {ours[1]:.4f} ({ours[0]} B) |",
-                  flush=True)
+        if data := most_triangles(vertices, triangles, bits, most_bytes):
+            mesh = DracoPy.decode(data)
+            astrolith.write_mesh((np.asarray(mesh.points).reshape(-1, 3), np.asarray(mesh.faces).reshape(-1, 3)), file)
+            found.append((len(data), mean_distance(programs, target, file, 20000)))
+    return min(found, key=lambda pair: pair[1])
 
 
 if __name__ == "__main__":
-    main()
+    given = arguments_of(__doc__, "programs", "meshes", bytes={"type": int, "nargs": "+", "default": [1250]})
+    head("body", "bytes", "Draco, mean %", "compact recipe, mean %")
+    for mesh in given.meshes:
+        for most_bytes in given.bytes:
+            with tempfile.TemporaryDirectory() as name:
+                errors = [error(given.programs, mesh, most_bytes, pathlib.Path(name)) for error in (draco_error, recipe_error)]
+            row(mesh.stem, most_bytes, *(f"{mean:.4f} ({size} B)" for size, mean in errors))

@@ -9,7 +9,6 @@ bare body; its pixels are projected to the body. The last column is the mean squ
 variance, in the plane that of a plane of 16 x 16 squares. Needs the Python package of the build on PYTHONPATH, NumPy and
 rasterio.
 """
-import argparse
 import json
 import pathlib
 import tempfile
@@ -18,6 +17,7 @@ import astrolith
 import numpy as np
 
 from held_out_textures import Judge, Programs, read_grey
+from measure import arguments_of, head, row
 
 BALL = {"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}}
 
@@ -54,40 +54,33 @@ class BodyWindows:
         return ((self.field.value(points) - self.bare.value(points)) / self.grey).reshape(side, side)
 
 
-def row(name, place, windows, judge, variance=None):
+def print_row(name, place, windows, judge, variance=None):
     """The medians of the scores of windows of heights over the photo's mean."""
-    mean = judge.square.mean()
-    scores = np.median([judge.score(mean + heights) for heights in windows], axis=0)
+    scores = np.median([judge.score(judge.square.mean() + heights) for heights in windows], axis=0)
     square = np.mean([np.mean(heights**2) for heights in windows]) / judge.square.var() if variance is None else variance
-    print(f"| {name} | {place} | {scores[0]:.3f} / {scores[1]:.3f} | {square:.2f} |", flush=True)
+    row(name, place, f"{scores[0]:.3f} / {scores[1]:.3f}", f"{square:.2f}")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("programs", type=pathlib.Path)
-    parser.add_argument("photos", type=pathlib.Path, nargs="+")
-    parser.add_argument("--body", type=pathlib.Path, action="append", default=[])
-    parser.add_argument("--side", type=int, default=128)
-    parser.add_argument("--windows", type=int, default=30)
-    options = parser.parse_args()
-    bodies = {"sphere": BALL, **{file.stem: json.loads(file.read_text()) for file in options.body}}
-    print("| layer | place | values / filters | variance |\n|---|---|---|---|")
-    for photo in options.photos:
+    given = arguments_of(__doc__, "programs", "photos", side=128, windows=30,
+                         body={"type": pathlib.Path, "action": "append", "default": []})  # fmt: skip
+    bodies = {"sphere": BALL, **{file.stem: json.loads(file.read_text()) for file in given.body}}
+    head("layer", "place", "values / filters", "variance")
+    for photo in given.photos:
         image = read_grey(photo)
-        y, x = (np.array(image.shape) - options.side) // 2
-        judge = Judge(image[y:y + options.side, x:x + options.side])
+        y, x = (np.array(image.shape) - given.side) // 2
+        judge = Judge(image[y:y + given.side, x:x + given.side])
+        mean, wide = judge.square.mean(), np.zeros(2 * [16 * given.side])
         for model in ("exemplar", "phase"):
             with tempfile.TemporaryDirectory() as work:
-                programs = Programs(options.programs, pathlib.Path(work))
+                programs, name = Programs(given.programs, work), f"{photo.stem}, {model}"
                 recipe, _ = programs.fit(judge.square, model)
-                name = f"{photo.stem}, {model}"
-                mean = judge.square.mean()
-                plane = [programs.texture(recipe, judge.square, seed) - mean for seed in range(1, options.windows + 1)]
-                wide = np.concatenate([programs.texture(recipe, np.zeros(2 * [16 * options.side]), seed).ravel() for seed in (1, 2)])
-                row(name, "plane", plane, judge, wide.var() / judge.square.var())
+                plane = [programs.texture(recipe, judge.square, seed) - mean for seed in range(1, given.windows + 1)]
+                variance = np.var([programs.texture(recipe, wide, seed) for seed in (1, 2)])
+                print_row(name, "plane", plane, judge, variance / judge.square.var())
                 for body, content in bodies.items():
-                    made, random = BodyWindows(content, recipe, options.side), np.random.default_rng(7)
-                    row(name, body, [made.window(random) for _ in range(options.windows)], judge)
+                    made, random = BodyWindows(content, recipe, given.side), np.random.default_rng(7)
+                    print_row(name, body, [made.window(random) for _ in range(given.windows)], judge)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 // Measures FastNoise2 on a grid of 256^3 points on one thread. Prints Mpoints a second as JSON, in the form
-// of noise_benchmark. noise_peers.py compiles this file, since FastNoise2 comes in no package.
+// of noise_benchmark. speed_table.py compiles this file, since FastNoise2 comes in no package.
 #include <FastNoise/FastNoise.h>
 
 #include <cstdio>

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Measures how a relief goes on below the edges of its model (`finer` of the layer), on patches of a fitted body.
 
-    finer_roughness.py recipe.astro EDGE [--patches 6]      needs the Python package of the build on PYTHONPATH, and NumPy
+    finer_roughness.py recipe.astro --edge EDGE [--patches 6]      needs the Python package of the build on PYTHONPATH, and NumPy
 
 EDGE is the mean edge of the model in the recipe's unit. S(l) is the root mean square of second differences of the
 heights over the bare body at the lag l, on patches 30 edges wide. Rows: S at 1/16 to 4 edges over the
 straight line through 1 and 4 edges, without and with levels, and the difference that remains in means over an edge.
 """
-import argparse
-
 import astrolith
 import numpy
+
+from measure import arguments_of, head, row
 
 PIXELS = 480
 WIDE = 30  # edges
@@ -45,17 +45,14 @@ def second_differences(heights, lag):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("recipe", type=astrolith.Recipe.read)
-    parser.add_argument("edge", type=float)
-    parser.add_argument("--patches", type=int, default=6)
-    arguments = parser.parse_args()
+    given = arguments_of(__doc__, "recipe", edge={"type": float, "required": True}, patches=6)
+    recipe = astrolith.Recipe.read(given.recipe)
     pixels_per_edge = PIXELS / WIDE
-    vertices = astrolith.mesh(arguments.recipe, resolution=40).vertices.astype(float)
+    vertices = astrolith.mesh(recipe, resolution=40).vertices.astype(float)
     differences = {finer: {lag: [] for lag in LAGS} for finer in range(4)}
     left = {finer: [] for finer in range(1, 4)}
-    for centre in vertices[numpy.random.default_rng(1).choice(len(vertices), arguments.patches, replace=False)]:
-        maps = [height_map(arguments.recipe, finer, [*centre, WIDE * arguments.edge]) for finer in range(4)]
+    for centre in vertices[numpy.random.default_rng(1).choice(len(vertices), given.patches, replace=False)]:
+        maps = [height_map(recipe, finer, [*centre, WIDE * given.edge]) for finer in range(4)]
         for finer, heights in enumerate(maps):
             for lag in LAGS:
                 differences[finer][lag].append(second_differences(heights, round(lag * pixels_per_edge)))
@@ -66,18 +63,13 @@ def main():
             cells = (heights - maps[0])[:count * cell, :count * cell].reshape(count, cell, count, cell)
             means = numpy.nanmean(cells, (1, 3))
             left[finer].append(means[numpy.isfinite(means)])
-    print("| levels | H | " + " | ".join(f"{lag:g}" for lag in LAGS) + " | means over an edge, rms, edges |")
-    print("|---" * (len(LAGS) + 3) + "|")
+    head("levels", "H", *(f"{lag:g}" for lag in LAGS), "means over an edge, rms, edges")
     for finer in range(4):
         s = [numpy.sqrt(numpy.mean(numpy.concatenate(differences[finer][lag]) ** 2)) for lag in LAGS]
         if finer == 0:
-            exponent = numpy.log(s[5] / s[4]) / numpy.log(4)
-            at_edge = s[4]
-        line = [at_edge * lag ** exponent for lag in LAGS]
-        rest = ""
-        if finer:
-            rest = f"{numpy.sqrt(numpy.mean(numpy.concatenate(left[finer]) ** 2)) / arguments.edge:.4f}"
-        print(f"| {finer} | {exponent:.2f} | " + " | ".join(f"{x / y:.2f}" for x, y in zip(s, line)) + f" | {rest} |")
+            exponent, at_edge = numpy.log(s[5] / s[4]) / numpy.log(4), s[4]
+        rest = numpy.sqrt(numpy.mean(numpy.concatenate(left[finer]) ** 2)) / given.edge if finer else 0.0
+        row(finer, f"{exponent:.2f}", *(f"{x / (at_edge * lag**exponent):.2f}" for x, lag in zip(s, LAGS)), f"{rest:.4f}")
 
 
 if __name__ == "__main__":

@@ -12,20 +12,17 @@ a run's time is what its threads took, if that is less. A fit has --time-limit 8
 the Python package of the build on PYTHONPATH, and NumPy.
 """
 
-import argparse
 import collections
 import hashlib
 import json
-import os
 import pathlib
-import resource
-import subprocess
 import sys
 import tempfile
-import time
 
 import astrolith
 import numpy as np
+
+from measure import Run, arguments_of
 
 SECONDS, BYTES, LARGEST_FILE = 20.0, 1e9, 100_000
 SHARES = (0.001, 0.01, 0.1, 0.5, 1.0)
@@ -47,87 +44,73 @@ class Mesh:
         rows["count"], rows["corners"] = 3, self.faces
         file.write_bytes(header.encode() + self.vertices.astype("<f4").tobytes() + rows.tobytes())
 
+    # Ways to garble it. Of vertices or of faces, `at` are the numbers of those that were chosen.
+    def moved(self, at, chance):
+        """Vertices go to random places of the box."""
+        self.vertices[at] = chance.uniform(self.vertices.min(0), self.vertices.max(0), (len(at), 3))
 
-# Ways to garble a mesh. Of vertices or of faces, `at` are the numbers of those that were chosen.
-def moved(mesh, at, chance):
-    """Vertices go to random places of the box."""
-    mesh.vertices[at] = chance.uniform(mesh.vertices.min(0), mesh.vertices.max(0), (len(at), 3))
+    def exchanged(self, at, chance):
+        """Vertices change places with one another."""
+        self.vertices[at] = self.vertices[chance.permutation(at)]
 
+    def flung(self, at, chance):
+        """Vertices are pushed up to 1e12 times as far out."""
+        self.vertices[at] *= 10 ** chance.uniform(0, 12, (len(at), 1))
 
-def exchanged(mesh, at, chance):
-    """Vertices change places with one another."""
-    mesh.vertices[at] = mesh.vertices[chance.permutation(at)]
+    def flipped(self, at, chance):
+        """A bit of each vertex changes."""
+        self.vertices.view("<u4")[at, chance.integers(3, size=len(at))] ^= np.uint32(1) << chance.integers(32, size=len(at), dtype="u4")
 
+    def joined(self, at, chance):
+        """Vertices become one point."""
+        self.vertices[at] = self.vertices[at[0]]
 
-def flung(mesh, at, chance):
-    """Vertices are pushed up to 1e12 times as far out."""
-    mesh.vertices[at] *= 10 ** chance.uniform(0, 12, (len(at), 1))
+    def flattened(self, at, chance):
+        """Vertices lose their third coordinate."""
+        self.vertices[at, 2] = 0
 
+    def rewired(self, at, chance):
+        """Corners of faces become random vertices."""
+        self.faces[at, chance.integers(3, size=len(at))] = chance.integers(len(self.vertices), size=len(at))
 
-def flipped(mesh, at, chance):
-    """A bit of each vertex changes."""
-    mesh.vertices.view("<u4")[at, chance.integers(3, size=len(at))] ^= np.uint32(1) << chance.integers(32, size=len(at), dtype="u4")
+    def beyond(self, at, chance):
+        """Corners of faces become numbers that no vertex has."""
+        self.faces[at, chance.integers(3, size=len(at))] = chance.choice([-1, 2**31 - 1, 3 * len(self.vertices)], len(at))
 
+    def dropped(self, at, chance):
+        """Faces are missing."""
+        self.faces = np.delete(self.faces, at, axis=0)
 
-def joined(mesh, at, chance):
-    """Vertices become one point."""
-    mesh.vertices[at] = mesh.vertices[at[0]]
+    def turned(self, at, chance):
+        """Faces look inwards."""
+        self.faces[at] = self.faces[at][:, ::-1]
 
-
-def flattened(mesh, at, chance):
-    """Vertices lose their third coordinate."""
-    mesh.vertices[at, 2] = 0
-
-
-def rewired(mesh, at, chance):
-    """Corners of faces become random vertices."""
-    mesh.faces[at, chance.integers(3, size=len(at))] = chance.integers(len(mesh.vertices), size=len(at))
-
-
-def beyond(mesh, at, chance):
-    """Corners of faces become numbers that no vertex has."""
-    mesh.faces[at, chance.integers(3, size=len(at))] = chance.choice([-1, 2**31 - 1, 3 * len(mesh.vertices)], len(at))
-
-
-def dropped(mesh, at, chance):
-    """Faces are missing."""
-    mesh.faces = np.delete(mesh.faces, at, axis=0)
-
-
-def turned(mesh, at, chance):
-    """Faces look inwards."""
-    mesh.faces[at] = mesh.faces[at][:, ::-1]
+    def doubled(self, at, chance):
+        """Faces are there twice."""
+        self.faces = np.concatenate([self.faces, self.faces[at]])
 
 
-def doubled(mesh, at, chance):
-    """Faces are there twice."""
-    mesh.faces = np.concatenate([mesh.faces, mesh.faces[at]])
-
-
-WAYS = (moved, exchanged, flung, flipped, joined, flattened, rewired, beyond, dropped, turned, doubled)
-OF_FACES = (rewired, beyond, dropped, turned, doubled)
+OF_FACES = (Mesh.rewired, Mesh.beyond, Mesh.dropped, Mesh.turned, Mesh.doubled)
+WAYS = (Mesh.moved, Mesh.exchanged, Mesh.flung, Mesh.flipped, Mesh.joined, Mesh.flattened, *OF_FACES)
 
 
 def programs(bin_folder, folder, mesh, whole):
     """The runs of a mesh, by name."""
-    def at(name):
-        return str(bin_folder / name)
-
-    out = ["-o", str(folder / "out.json")]
-    tiny = ["--spheres", "20", "--time-limit", "8"]
-    return {
-        "describe": [at("describe"), mesh, "-o", str(folder / "out.npy")],
-        "describe --surface": [at("describe"), mesh, "--surface", *out],
-        "compare": [at("compare"), whole, mesh, "--realism", *out],
-        "compare, first": [at("compare"), mesh, whole, "--realism", *out],
-        "gravity": [at("gravity"), mesh, "--density", "2000", "-o", str(folder / "out.csv")],
-        "fit_shape --base-only": [at("fit_shape"), mesh, *tiny, "--base-only", *out],
-        "fit_shape, relief": [at("fit_shape"), mesh, *tiny, *out],
-        "fit_shape, thesis": [at("fit_shape"), mesh, *tiny, "--generations", "1", *out],
-        "fit_shape --packing-only": [at("fit_shape"), mesh, *tiny[:2], "--packing-only", "-o", str(folder / "out.csv")],
-        "synth --vary": [at("synth"), str(folder / "ball.json"), "--vary", "0.2", "--target", mesh, "--write-recipe",
-                         str(folder / "varied.json")],
+    out, csv, recipe = ["-o", folder / "out.json"], ["-o", folder / "out.csv"], folder / "varied.json"
+    tiny = ["--spheres", 20, "--time-limit", 8]
+    runs = {
+        "describe": [mesh, "-o", folder / "out.npy"],
+        "describe --surface": [mesh, "--surface", *out],
+        "compare": [whole, mesh, "--realism", *out],
+        "compare, first": [mesh, whole, "--realism", *out],
+        "gravity": [mesh, "--density", 2000, *csv],
+        "fit_shape --base-only": [mesh, *tiny, "--base-only", *out],
+        "fit_shape, relief": [mesh, *tiny, *out],
+        "fit_shape, thesis": [mesh, *tiny, "--generations", 1, *out],
+        "fit_shape --packing-only": [mesh, *tiny[:2], "--packing-only", *csv],
+        "synth --vary": [folder / "ball.json", "--vary", 0.2, "--target", mesh, "--write-recipe", recipe],
     }
+    return {name: [bin_folder / name.split()[0].strip(","), *words] for name, words in runs.items()}
 
 
 def check_tiles_run(bin_folder, folder, number):
@@ -136,9 +119,8 @@ def check_tiles_run(bin_folder, folder, number):
     if not tiles.exists():
         tiles.mkdir()
         for i in (1, 2):
-            subprocess.run([str(bin_folder / "synth"), str(folder / "ball.json"), "--resolution", "24", "--tile",
-                            f"{i}/2", "-o", str(tiles / f"{i}.ply"), "--summary", str(tiles / f"{i}.json"), "--quiet"],
-                           check=True)
+            Run(bin_folder / "synth", folder / "ball.json", "--resolution", 24, "--tile", f"{i}/2", "-o", tiles / f"{i}.ply",
+                "--summary", tiles / f"{i}.json", "--quiet")  # fmt: skip
         (tiles / "2.ply").rename(folder / "whole_tile.ply")
     garble(folder / "whole_tile.ply", number, tiles / "2.ply")
     summary = json.loads((tiles / "2.json").read_text())
@@ -147,7 +129,7 @@ def check_tiles_run(bin_folder, folder, number):
     del tile["checksum"]
     tile["checksum"] = hashlib.sha256(json.dumps(tile, separators=(",", ":")).encode()).hexdigest()
     (tiles / "2.json").write_text(json.dumps(summary))
-    return [str(bin_folder / "check_tiles"), str(tiles / "1.json"), str(tiles / "2.json"), "--meshes", str(tiles)]
+    return [bin_folder / "check_tiles", tiles / "1.json", tiles / "2.json", "--meshes", tiles]
 
 
 def garble(file, number, output):
@@ -161,66 +143,50 @@ def garble(file, number, output):
     return f"{file.name} {way.__name__} {share:g}"
 
 
-def run(command):
-    """Status, seconds, bytes and the lines on stderr. Well past the limit the system ends the run."""
-    def limit():
-        resource.setrlimit(resource.RLIMIT_CPU, (int(2 * SECONDS), int(2 * SECONDS)))
-
-    start = time.monotonic()
-    with tempfile.TemporaryFile() as words:
-        process = subprocess.Popen([*command, "--quiet"], stdout=subprocess.DEVNULL, stderr=words, preexec_fn=limit)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = min(time.monotonic() - start, usage.ru_utime + usage.ru_stime)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        words.seek(0)
-        lines = words.read().decode(errors="replace").splitlines()
-    return process.returncode, seconds, 1024 * usage.ru_maxrss, lines
+def keeps_the_limits(program, run, seconds):
+    lines = len(run.errors.splitlines())
+    if program == "check_tiles":
+        said = run.status in (0, 1, 2)
+    else:
+        said = run.status in (0, 2) and lines == (run.status == 2)
+    return said and seconds <= SECONDS and run.bytes <= BYTES
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("shapes", type=pathlib.Path)
-    parser.add_argument("--meshes", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0, help="number of the first mesh")
-    parser.add_argument("--only", nargs="+", default=[], help="programs to run")
-    parser.add_argument("--keep", type=pathlib.Path, help="keep the garbled meshes that break a limit here")
-    arguments = parser.parse_args()
-    shapes = sorted(f for f in arguments.shapes.glob("*.ply") if f.stat().st_size <= LARGEST_FILE)
-    statuses, most = collections.defaultdict(collections.Counter), collections.defaultdict(lambda: [0.0, 0.0])
-    broken = 0
+    given = arguments_of(__doc__, "bin", "shapes_folder", meshes=200, first=0, only={"nargs": "+", "default": []},
+                         keep={"type": pathlib.Path, "help": "keep the garbled meshes that break a limit here"})  # fmt: skip
+    shapes = sorted(f for f in given.shapes_folder.glob("*.ply") if f.stat().st_size <= LARGEST_FILE)
+    runs_of, broken = collections.defaultdict(list), 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "ball.json").write_text(BODY)
         try:
-            for number in range(arguments.first, arguments.first + arguments.meshes):
+            for number in range(given.first, given.first + given.meshes):
                 shape, mesh = shapes[number % len(shapes)], folder / "garbled.ply"
                 what = f"{number}: {garble(shape, number, mesh)}"
-                runs = programs(arguments.bin, folder, str(mesh), str(shape))
-                runs["check_tiles"] = check_tiles_run(arguments.bin, folder, number)
+                runs = programs(given.bin, folder, mesh, shape)
+                runs["check_tiles"] = check_tiles_run(given.bin, folder, number)
                 for program, command in runs.items():
-                    if arguments.only and program not in arguments.only:
+                    if given.only and program not in given.only:
                         continue
-                    status, seconds, size, lines = run(command)
-                    statuses[program][status] += 1
-                    most[program] = [max(most[program][0], seconds), max(most[program][1], size)]
-                    told = program == "check_tiles" or len(lines) == (status == 2)
-                    fine = status in (0, 2) or (program == "check_tiles" and status == 1)
-                    if fine and told and seconds <= SECONDS and size <= BYTES:
+                    run = Run(*command, "--quiet", check=False, most_seconds=int(2 * SECONDS))
+                    seconds = min(run.clock, run.seconds)
+                    runs_of[program].append((run.status, seconds, run.bytes / 1e6))
+                    if keeps_the_limits(program, run, seconds):
                         continue
                     broken += 1
-                    figures = f"status {status}, {seconds:.1f} s, {size / 1e6:.0f} MB"
-                    print(f"{what}: {program}: {figures}, {lines[-1:]}", flush=True)
-                    if arguments.keep:
-                        arguments.keep.mkdir(exist_ok=True)
-                        garble(shape, number, arguments.keep / f"{number}.ply")
+                    print(f"{what}: {program}: status {run.status}, {seconds:.1f} s, {run.bytes / 1e6:.0f} MB, "
+                          f"{run.errors.splitlines()[-1:]}", flush=True)
+                    if given.keep:
+                        given.keep.mkdir(exist_ok=True)
+                        garble(shape, number, given.keep / f"{number}.ply")
         except KeyboardInterrupt:
             print("stopped; the table holds the runs so far")
     print(f"\n{'program':26} {'status 0':>8} {'status 2':>8} {'other':>6} {'seconds':>8} {'MB':>6}")
-    for program, counts in statuses.items():
-        other = counts.total() - counts[0] - counts[2]
-        seconds, megabytes = most[program][0], most[program][1] / 1e6
-        print(f"{program:26} {counts[0]:8} {counts[2]:8} {other:6} {seconds:8.1f} {megabytes:6.0f}")
+    for program, figures in runs_of.items():
+        statuses, seconds, megabytes = zip(*figures)
+        good, refused = statuses.count(0), statuses.count(2)
+        print(f"{program:26} {good:8} {refused:8} {len(statuses) - good - refused:6} {max(seconds):8.1f} {max(megabytes):6.0f}")
     return 1 if broken else 0
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How like a photo the textures are that a square of it gives: our layers beside their peers.
 
-    held_out_textures.py PROGRAMS PHOTO... [--side 256] [--seeds 3] [--json FILE] [--markdown FILE]
+    held_out_textures.py PROGRAMS PHOTO... [--side 256] [--seeds 3] [--json FILE]
 
 PROGRAMS is the folder of fit_gabor and synth, such as build/release/bin. Four squares stand two by two in the middle of
 a photo. Every method sees one of them and makes textures of its size, one for each seed. They are scored against the
@@ -14,8 +14,7 @@ These are the scores of fit_gabor (estimation/gabor/exemplar/texture_score.h). T
 
     real          the seen square itself
     random phase  its periodic component (Moisan 2011) with the phases of white noise (Galerne et al. 2011)
-    blending      tiling and blending in the plane (Heitz and Neyret 2018): a triangle lattice of the side
-                  n / (2 sqrt(3)), the linear weights of the paper, and the periodic component as the input
+    blending      tiling and blending of its periodic component in the plane (Heitz and Neyret 2018)
     gabor, phase, exemplar  fit_gabor --model, then synth --texture
     auto          whichever of them fit_gabor --model auto takes for the seen square
 
@@ -23,10 +22,8 @@ The table has the means over the four. "worse" says by how many standard errors 
 exceeds that of random phases, where it does. Nothing is set for a photo by itself. Needs NumPy and rasterio
 (python/requirements.txt).
 """
-import argparse
 import json
 import pathlib
-import subprocess
 import tempfile
 import warnings
 from statistics import NormalDist
@@ -34,12 +31,12 @@ from statistics import NormalDist
 import numpy as np
 import rasterio
 
+from measure import Run, arguments_of, head, row
+
 MODELS = ["gabor", "phase", "exemplar"]
 METHODS = ["real", "random phase", "blending", *MODELS, "auto"]
 warnings.filterwarnings("ignore", category=rasterio.errors.NotGeoreferencedWarning)
 
-
-# ---------------------------------------------------------------------------------------------------- images
 
 def read_grey(path):
     """The image as doubles, full scale 1 for whole numbers; colours become luma."""
@@ -70,8 +67,6 @@ def squares(photo, side):
     x, y = width // 2 - side, height // 2 - side
     return [photo[v:v + side, u:u + side] for v in (y, y + side) for u in (x, x + side)]
 
-
-# ---------------------------------------------------------------------------------------------------- scores
 
 def distance(values, reference):
     at = (np.arange(4096) + 0.5) / 4096
@@ -106,8 +101,6 @@ class Judge:
         filters = [distance(a.ravel(), b.ravel()) for a, b in zip(filter_responses(texture), self.responses)]
         return np.array([distance(texture.ravel(), self.square.ravel()), np.mean(filters)])
 
-
-# ----------------------------------------------------------------------------------------------------- peers
 
 def periodic_component(image):
     """Moisan 2011: the image less the smooth one that has its jumps across the borders."""
@@ -166,26 +159,20 @@ def blending(image, seed):
     return values[np.clip(ranks, 0, values.size - 1)]
 
 
-# ------------------------------------------------------------------------------------------------------ ours
-
 class Programs:
     def __init__(self, folder, work):
-        self.folder, self.work = pathlib.Path(folder), work
-
-    def run(self, program, *arguments):
-        return subprocess.run([self.folder / program, *map(str, arguments), "--quiet"], check=True)
+        self.folder, self.work = folder, pathlib.Path(work)
 
     def fit(self, square, model):
         """The recipe of a model, and the model that was taken."""
         photo, recipe, summary = self.work / "photo.png", self.work / f"{model}.json", self.work / "summary.json"
         write_grey(photo, square)
-        self.run("fit_gabor", photo, "-o", recipe, "--model", model, "--summary", summary)
+        Run(self.folder / "fit_gabor", photo, "-o", recipe, "--model", model, "--summary", summary, "--quiet")
         return recipe, json.loads(summary.read_text())["model"]
 
     def texture(self, recipe, square, seed):
-        output = self.work / "texture.tif"
-        size = f"{square.shape[1]}x{square.shape[0]}"
-        self.run("synth", recipe, "--texture", size, "-o", output, "--seed", seed)
+        output, size = self.work / "texture.tif", f"{square.shape[1]}x{square.shape[0]}"
+        Run(self.folder / "synth", recipe, "--texture", size, "-o", output, "--seed", seed, "--quiet")
         return read_grey(output) + square.mean()
 
 
@@ -196,8 +183,7 @@ def measure_square(seen, unseen, seeds, programs):
     def mean_score(texture_of):
         return np.mean([judge.score(texture_of(seed)) for seed in range(1, seeds + 1)], axis=0)
 
-    scores = {"real": judge.score(seen),
-              "random phase": mean_score(lambda seed: random_phase(seen, seed)),
+    scores = {"real": judge.score(seen), "random phase": mean_score(lambda seed: random_phase(seen, seed)),
               "blending": mean_score(lambda seed: blending(seen, seed))}
     for model in MODELS:
         recipe = programs.fit(seen, model)[0]
@@ -206,10 +192,7 @@ def measure_square(seen, unseen, seeds, programs):
     return {**scores, "auto": scores[taken]}, taken
 
 
-def measure(path, side, seeds, programs):
-    four = squares(read_grey(path), side)
-    if four is None:
-        return None
+def measure(path, four, seeds, programs):
     measured = [measure_square(four[k], four[k ^ 1], seeds, programs) for k in range(4)]
     scores = {m: np.array([s[m] for s, _ in measured]) for m in METHODS}
     worse = scores["auto"].sum(axis=1) - scores["random phase"].sum(axis=1)
@@ -219,51 +202,27 @@ def measure(path, side, seeds, programs):
             **{m: [round(float(s), 4) for s in scores[m].mean(axis=0)] for m in METHODS}}
 
 
-# ----------------------------------------------------------------------------------------------------- table
-
-def markdown(rows):
-    lines = ["| photo | " + " | ".join(METHODS) + " | worse |", "|---" * (len(METHODS) + 2) + "|"]
-
-    def cells(scores):
-        return " | ".join(f"{v:.3f} / {f:.3f}" for v, f in scores)
-
-    for row in rows:
-        lines.append(f"| {row['photo']} | {cells([row[m] for m in METHODS])} | {max(0.0, row['worse'])} |")
-    medians = [np.median([row[m] for row in rows], axis=0) for m in METHODS]
-    lines.append(f"| **median of {len(rows)}** | {cells(medians)} | |")
-    return "\n".join(lines) + "\n"
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("programs", type=pathlib.Path)
-    parser.add_argument("photos", type=pathlib.Path, nargs="+")
-    parser.add_argument("--side", type=int, default=256)
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--json", type=pathlib.Path, help="rows are added to this file, and photos in it are left out")
-    parser.add_argument("--markdown", type=pathlib.Path)
-    options = parser.parse_args()
-    rows = []
-    if options.json and options.json.exists():
-        rows = [json.loads(line) for line in options.json.read_text().splitlines()]
+    given = arguments_of(__doc__, "programs", "photos", side=256, seeds=3,
+                         json={"type": pathlib.Path, "help": "rows are added to this file, and photos in it are left out"})
+    rows = [json.loads(line) for line in given.json.read_text().splitlines()] if given.json and given.json.exists() else []
     with tempfile.TemporaryDirectory() as work:
-        programs = Programs(options.programs, pathlib.Path(work))
-        for path in options.photos:
-            if any(row["photo"] == path.name for row in rows):
+        for path in given.photos:
+            if any(known["photo"] == path.name for known in rows):
                 continue
-            row = measure(path, options.side, options.seeds, programs)
-            if row is None:
-                print(f"{path.name}: has no room for four squares of {options.side} pixels, left out", flush=True)
+            four = squares(read_grey(path), given.side)
+            if four is None:
+                print(f"{path.name}: has no room for four squares of {given.side} pixels, left out", flush=True)
                 continue
-            rows.append(row)
-            print(json.dumps(row), flush=True)
-            if options.json:
-                with options.json.open("a") as file:
-                    file.write(json.dumps(row) + "\n")
-    table = markdown(rows)
-    print(table)
-    if options.markdown:
-        options.markdown.write_text(table)
+            rows.append(measure(path, four, given.seeds, Programs(given.programs, work)))
+            print(json.dumps(rows[-1]), flush=True)
+            if given.json:
+                with given.json.open("a") as file:
+                    file.write(json.dumps(rows[-1]) + "\n")
+    head("photo", *METHODS, "worse")
+    medians = {m: np.median([known[m] for known in rows], axis=0) for m in METHODS}
+    for line in [*rows, {"photo": f"**median of {len(rows)}**", **medians}]:
+        row(line["photo"], *("{:.3f} / {:.3f}".format(*line[m]) for m in METHODS), max(0.0, line["worse"]) if "worse" in line else "")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Measures the slope and the roughness of landing sites again, on the meshes of aligned patches.
 
-    landing_sites.py RECIPE SIZE [--density 2000] [--period 12] [--resolution 256] [--sites 5]
+    landing_sites.py RECIPE --size SIZE [--density 2000] [--period 12] [--resolution 256] [--sites 5]
 
 SIZE is in the recipe's unit. A patch has cells as fine as the body's mesh. Slopes are those of the patch's facets
 against the effective gravity at their centres; the plane is fitted with NumPy. Needs the Python package of the build on
 PYTHONPATH, and NumPy.
 """
-import argparse
-
 import astrolith
 import numpy
+
+from measure import arguments_of, head, row
 
 METRES = {"m": 1.0, "km": 1000.0}
 
@@ -46,25 +46,14 @@ def measured(site, cell, body, options):
     return (slopes * weight).sum() / weight.sum(), numpy.sqrt((weights * rest**2).sum() / weights.sum())
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("recipe")
-    parser.add_argument("size", type=float)
-    parser.add_argument("--density", type=float, default=2000.0)
-    parser.add_argument("--period", type=float, default=12.0)
-    parser.add_argument("--resolution", type=int, default=256)
-    parser.add_argument("--sites", type=int, default=5)
-    options = parser.parse_args()
-    body = {"density": options.density, "period": options.period, "resolution": options.resolution}
-    found = astrolith.gravity(options.recipe, sites=options.sites, site_size=options.size, **body)
-    cell = astrolith.mesh(options.recipe, resolution=options.resolution).figures.cell
-    print("| slope | again | roughness, m | again |\n|---|---|---|---|")
-    for site in found.sites:
-        slope, roughness = measured(site, cell, body, options)
-        of_roughness = METRES[found.figures.unit] * roughness / site.roughness_m - 1
-        print(f"| {site.mean_slope_deg:.3f} | {100 * (slope / site.mean_slope_deg - 1):+.1f} % "
-              f"| {site.roughness_m:.4g} | {100 * of_roughness:+.1f} % |")
-
-
 if __name__ == "__main__":
-    main()
+    given = arguments_of(__doc__, "recipe", size={"type": float, "required": True}, density=2000.0, period=12.0, resolution=256, sites=5)
+    body = {"density": given.density, "period": given.period, "resolution": given.resolution}
+    found = astrolith.gravity(given.recipe, sites=given.sites, site_size=given.size, **body)
+    cell = astrolith.mesh(given.recipe, resolution=given.resolution).figures.cell
+    head("slope", "again", "roughness, m", "again")
+    for site in found.sites:
+        slope, roughness = measured(site, cell, body, given)
+        of_roughness = METRES[found.figures.unit] * roughness / site.roughness_m - 1
+        row(f"{site.mean_slope_deg:.3f}", f"{100 * (slope / site.mean_slope_deg - 1):+.1f} %",
+            f"{site.roughness_m:.4g}", f"{100 * of_roughness:+.1f} %")

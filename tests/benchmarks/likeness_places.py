@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""How far a body of its kind goes from the measured one: the correlation of both reliefs place by place, and the angles
+"""How far a body of its kind goes from the measured one: the correlation of both reliefs vertex by vertex, and the angles
 between neighbouring facets of both surfaces, which seams of patches would make larger.
 
     likeness_places.py RECIPE... [--resolution 256]       needs the Python package of the build on PYTHONPATH, and NumPy
 """
-import argparse
-
 import astrolith
 import numpy
+
+from measure import arguments_of
 
 
 def facet_angles(mesh):
@@ -20,12 +20,9 @@ def facet_angles(mesh):
     return numpy.degrees(numpy.arccos(numpy.clip(numpy.sum(normals[first] * normals[second], axis=1), -1, 1)))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("recipes", nargs="+")
-    parser.add_argument("--resolution", type=int, default=256)
-    options = parser.parse_args()
-    for file in options.recipes:
+if __name__ == "__main__":
+    given = arguments_of(__doc__, "recipes", resolution=256)
+    for file in given.recipes:
         recipe = astrolith.Recipe.read(file)
         bare = recipe.copy()
         bare["layers"] = []
@@ -34,10 +31,6 @@ def main():
         for name, body in [("measured", recipe), *((f"seed {seed}", recipe.like(seed)) for seed in (1, 2, 3))]:
             heights = astrolith.Field(body).value(points) - base
             measured = heights if measured is None else measured
-            angles = numpy.quantile(facet_angles(astrolith.mesh(body, resolution=options.resolution)), [0.99, 0.999, 0.9999])
+            angles = numpy.quantile(facet_angles(astrolith.mesh(body, resolution=given.resolution)), [0.99, 0.999, 0.9999])
             print(f"{file}, {name}: correlation {numpy.corrcoef(measured, heights)[0, 1]:.3f}, "
                   f"angles of facets, degrees: 99, 99.9, 99.99 %: {numpy.round(angles, 1)}", flush=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -7,103 +7,102 @@ Each mesh is made with one and with two threads, and predicted. What is checked:
   - the mesh is a closed 2-manifold and has the same bytes for both numbers of threads, or
   - the program refuses the recipe: exit status 2 and one line;
   - the mesh takes at most 1.2 times the predicted memory and at most 60 seconds.
-The program prints a table of failures by kind. Its exit status is 1 if there are any. With --compact it only turns the
-recipes into compact ones and back, which must change nothing; that needs the Python package of the build on PYTHONPATH.
+The script prints a table of failures by kind, and keeps their recipes in the folder of --keep. Its exit status is 1 if
+there are any. With --compact it only turns the recipes into compact ones and back, which must change nothing; that needs the
+Python package of the build on PYTHONPATH.
 """
-import argparse
 import collections
 import hashlib
 import json
-import os
 import pathlib
-import signal
-import subprocess
+import struct
 import sys
 import tempfile
-import threading
-import time
 
-import closed_mesh
 import recipe_draw
+from measure import Run, arguments_of
 
-MOST_SECONDS = 60.0  # of the processors, for each thread; other programs may run beside this one
-MOST_WAITED_SECONDS = 3 * MOST_SECONDS
+MOST_SECONDS = 60  # of the processors, for each thread; other programs may run beside this one
 MOST_OF_PREDICTED_MEMORY = 1.2
 
-Run = collections.namedtuple("Run", "status words processor bytes summary")
+
+# The next two functions share no code with synth.
+def triangles_of(ply):
+    """The vertex numbers of all triangles of a binary PLY file of synth, and the number of vertices."""
+    data = ply.read_bytes()
+    end = data.index(b"end_header\n") + len(b"end_header\n")
+    header = data[:end].decode("ascii", "replace").splitlines()
+    counts = {line.split()[1]: int(line.split()[2]) for line in header if line.startswith("element ")}
+    first = end + 4 * sum(line.startswith("property float") for line in header) * counts["vertex"]
+    faces = struct.iter_unpack("<BIII", data[first:first + 13 * counts["face"]])
+    return [face[1:] for face in faces], counts["vertex"]
 
 
-def run(synth, arguments, folder):
-    """Runs the program under a time limit. `status` is None for a program that was stopped."""
+def defect_of(ply):
+    """Why a mesh is no closed 2-manifold; empty if it is one."""
+    triangles, vertices = triangles_of(ply)
+    after = {}  # (vertex, next vertex) -> the third vertex of their triangle
+    for a, b, c in triangles:
+        after.update({(a, b): c, (b, c): a, (c, a): b})
+    if not triangles or len(after) != 3 * len(triangles):
+        return "no triangle, or an edge with two triangles on one side"
+    if any(a == b or (b, a) not in after for a, b in after):
+        return "a triangle without area, or an open edge"
+    around = collections.Counter(a for a, _ in after)
+    for vertex, first in dict(after.keys()).items():  # the triangles around a vertex form one cycle
+        at, steps = first, 0
+        while steps == 0 or (at != first and steps < around[vertex]):
+            at, steps = after[vertex, at], steps + 1
+        if steps != around[vertex]:
+            return "a vertex with several fans"
+    return "" if len(around) == vertices else "a vertex without triangle"
+
+
+def run_of(synth, arguments, folder, threads):
+    """A run, and its summary; it is stopped at three times the most seconds."""
     summary = folder / "summary.json"
     summary.unlink(missing_ok=True)
-    with open(folder / "words", "w+b") as words:
-        start = time.monotonic()
-        child = subprocess.Popen([synth, *map(str, arguments), "--summary", summary], stdout=words, stderr=words)
-        late = threading.Timer(MOST_WAITED_SECONDS, lambda: os.kill(child.pid, signal.SIGKILL))
-        late.start()
-        _, status, usage = os.wait4(child.pid, 0)
-        late.cancel()
-        seconds = time.monotonic() - start
-        child.returncode = os.waitstatus_to_exitcode(status)
-        words.seek(0)
-        text = words.read().decode("utf-8", "replace")
-    code = None if child.returncode == -signal.SIGKILL and seconds >= MOST_WAITED_SECONDS else child.returncode
-    figures = json.loads(summary.read_text()) if code == 0 and summary.exists() else {}
-    return Run(code, text, usage.ru_utime + usage.ru_stime, figures.get("peak_bytes", 0), figures)
+    run = Run(synth, *arguments, "--summary", summary, check=False, most_seconds=3 * MOST_SECONDS * threads)
+    return run, json.loads(summary.read_text()) if run.status == 0 else {}
 
 
-def kind_of_words(words):
+def kind_of_words(run):
     """The message without its numbers and names, so that equal failures fall together."""
-    line = words.strip().splitlines()[-1] if words.strip() else "no words"
-    line = line.split(".json: ")[-1]
+    line = ["no words", *run.errors.strip().splitlines()][-1].split(".json: ")[-1]
     return "".join("N" if c.isdigit() else c for c in line)[:90]
 
 
-def is_refusal(result):
-    return result.status == 2 and len(result.words.strip().splitlines()) == 1
-
-
-def failures_of_run(result, predicted, threads):
-    if result.status is None or result.processor > MOST_SECONDS * threads:
-        return [f"above {MOST_SECONDS:.0f} s"]
-    if is_refusal(result):
-        return []
-    if result.status != 0:
-        return [f"exit {result.status}: {kind_of_words(result.words)}"]
-    if not predicted.get("peak_bytes"):
-        return []
-    ratio = result.bytes / predicted["peak_bytes"]
-    return ["memory above 1.2 times the prediction"] if ratio > MOST_OF_PREDICTED_MEMORY else []
+def failures_of_run(run, summary, predicted, threads):
+    if run.seconds > MOST_SECONDS * threads:
+        yield f"above {MOST_SECONDS} s"
+    elif run.status == 0 and summary["peak_bytes"] > MOST_OF_PREDICTED_MEMORY * predicted.get("peak_bytes", float("inf")):
+        yield "memory above 1.2 times the prediction"
+    elif run.status not in (0, 2) or (run.status == 2 and len(run.errors.strip().splitlines()) != 1):
+        yield f"exit {run.status}: {kind_of_words(run)}"
 
 
 def check(synth, number, folder):
     """Makes, predicts and checks one recipe. Returns its failures, whether it was refused, and its file."""
     content, cells = recipe_draw.recipe(number)
-    file = folder / f"{number}.json"
+    file, mesh = folder / f"{number}.json", folder / f"{number}.ply"
     file.write_text(json.dumps(content, indent=1))
-    failures, hashes = [], set()
+    failures, hashes = set(), set()
     for threads in (1, 2):
-        mesh = folder / f"{number}.ply"
-        mesh.unlink(missing_ok=True)
         common = [file, "-o", mesh, "--resolution", cells, "--threads", threads, "--quiet"]
-        prediction = run(synth, [*common, "--predict"], folder)
-        predicted = prediction.summary.get("predicted", {})
-        made = run(synth, common, folder)
-        failures += failures_of_run(made, predicted, threads)
-        if prediction.status is None:
-            failures.append("prediction above 60 s")
-        if made.status == 0 and prediction.status != 0:
-            failures.append(f"prediction alone refuses: {kind_of_words(prediction.words)}")
-        hashes.add((made.status, hashlib.sha256(mesh.read_bytes()).hexdigest() if made.status == 0 else ""))
-        if made.status == 0 and threads == 2:
-            defect = closed_mesh.defect_of(mesh)
-            if defect:
-                failures.append(f"no closed 2-manifold: {defect}")
+        prediction, told = run_of(synth, [*common, "--predict"], folder, threads)
+        run, summary = run_of(synth, common, folder, threads)
+        failures.update(failures_of_run(run, summary, told.get("predicted", {}), threads))
+        if prediction.seconds > MOST_SECONDS * threads:
+            failures.add("prediction above 60 s")
+        if run.status == 0 and prediction.status != 0:
+            failures.add(f"prediction alone refuses: {kind_of_words(prediction)}")
+        hashes.add((run.status, hashlib.sha256(mesh.read_bytes()).hexdigest() if run.status == 0 else ""))
+        if run.status == 0 and threads == 2 and (defect := defect_of(mesh)):
+            failures.add(f"no closed 2-manifold: {defect}")
         mesh.unlink(missing_ok=True)
     if len(hashes) > 1:
-        failures.append("different bytes for 1 and 2 threads")
-    return sorted(set(failures)), made.status == 2, file
+        failures.add("different bytes for 1 and 2 threads")
+    return sorted(failures), run.status == 2, file
 
 
 def check_compact(numbers, folder):
@@ -127,36 +126,26 @@ def check_compact(numbers, folder):
     return 0
 
 
-def print_table(kinds, refusals, count):
-    print(f"\n{count} recipes, {refusals} refused in one line, {sum(map(len, kinds.values()))} failures")
-    for kind, numbers in sorted(kinds.items(), key=lambda item: -len(item[1])):
-        print(f"{len(numbers):5d}  {kind}  (recipes {', '.join(map(str, numbers[:8]))})")
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("synth", help="the program")
-    parser.add_argument("--count", type=int, default=50, help="number of recipes")
-    parser.add_argument("--first", type=int, default=1, help="number of the first recipe")
-    parser.add_argument("--keep", type=pathlib.Path, help="folder for the recipes that failed")
-    parser.add_argument("--compact", action="store_true", help="only turn the recipes into compact ones and back")
-    options = parser.parse_args()
-    numbers = range(options.first, options.first + options.count)
+    given = arguments_of(__doc__, "synth", count=50, first=1, keep={"type": pathlib.Path}, compact={"action": "store_true"})
+    numbers = range(given.first, given.first + given.count)
     kinds, refusals = collections.defaultdict(list), 0
     with tempfile.TemporaryDirectory() as name:
-        if options.compact:
+        if given.compact:
             return check_compact(numbers, pathlib.Path(name))
         for number in numbers:
-            failures, refused, file = check(options.synth, number, pathlib.Path(name))
+            failures, refused, file = check(given.synth, number, pathlib.Path(name))
             refusals += refused
             for failure in failures:
                 kinds[failure].append(number)
                 print(f"recipe {number}: {failure}", flush=True)
-                if options.keep:
-                    options.keep.mkdir(parents=True, exist_ok=True)
-                    (options.keep / f"{number}.json").write_bytes(file.read_bytes())
+                if given.keep:
+                    given.keep.mkdir(parents=True, exist_ok=True)
+                    (given.keep / f"{number}.json").write_bytes(file.read_bytes())
             file.unlink()
-    print_table(kinds, refusals, options.count)
+    print(f"\n{given.count} recipes, {refusals} refused in one line, {sum(map(len, kinds.values()))} failures")
+    for kind, failed in sorted(kinds.items(), key=lambda item: -len(item[1])):
+        print(f"{len(failed):5d}  {kind}  (recipes {', '.join(map(str, failed[:8]))})")
     return 1 if kinds else 0
 
 

@@ -52,215 +52,192 @@ class Draw:
         """Keeps each field with a chance of one half; the others take their defaults."""
         return {name: value for name, value in fields.items() if self.chance(0.5)}
 
+    def spheres(self, count, spread):
+        return [[self.random.gauss(0, spread) * self.size for _ in range(3)] + [self.size * self.log(0.1, 0.7)]
+                for _ in range(count)]
 
-def spheres(draw, count, spread):
-    return [[draw.random.gauss(0, spread) * draw.size for _ in range(3)] + [draw.size * draw.log(0.1, 0.7)]
-            for _ in range(count)]
+    def warp(self):
+        return {"amplitude": self.size * self.log(1e-3, 0.2), "frequency": self.log(0.3, 10) / self.size,
+                **self.some({"octaves": self.integer(1, 6), "gain": self.uniform(0, 1),
+                             "lacunarity": self.uniform(1.5, 3)})}
 
+    def metaballs(self, most, depth=0):
+        body = {"type": "metaballs", "spheres": self.spheres(self.integer(1, most), self.uniform(0.1, 0.5))}
+        if self.chance(0.5):
+            body["kernel"] = self.choice(["gaussian", "metaball", "soft_object", "wyvill", "cauchy"])
+        if self.chance(0.5):
+            body["a"] = body["b"] = self.uniform(0.5, 4)
+        body.update(self.some({"blend_exponent": self.uniform(1, 6), "iso_value": self.log(0.5, 2)}))
+        if self.chance(0.3):
+            body["cutoff_radii"] = self.uniform(1.5, 8)
+        if self.chance(0.3):
+            body["subtract"] = self.spheres(self.integer(1, 8), 0.4)
+        if self.chance(0.2):
+            body["warp"] = self.warp()
+        if self.chance(0.25 if depth == 0 else 0.1):
+            body["operations"] = [self.operation(depth) for _ in range(self.integer(1, 3))]
+        return body
 
-def warp(draw):
-    return {"amplitude": draw.size * draw.log(1e-3, 0.2), "frequency": draw.log(0.3, 10) / draw.size,
-            **draw.some({"octaves": draw.integer(1, 6), "gain": draw.uniform(0, 1),
-                         "lacunarity": draw.uniform(1.5, 3)})}
+    def operation(self, depth):
+        kind = self.choice(["union", "intersection", "difference", "blend", "clean_union"])
+        fields = {"type": kind, "body": self.metaballs(6, depth + 1)}
+        if kind == "blend":
+            fields.update({"width": self.size * self.log(0.01, 0.5), "exponent": self.uniform(1, 64)})
+        elif kind == "clean_union":
+            fields.update(self.some({"bulge": self.uniform(-0.1, 0.1) * self.size,
+                                     "reach": [self.size * self.log(0.02, 0.5) for _ in range(2)]}))
+        else:
+            fields.update(self.some({"alpha": self.uniform(-0.9, 1)}))
+        return fields
 
+    def fractal(self):
+        kind = self.choice(["simplex", "perlin", "worley"])
+        layer = {"type": kind, "amplitude": self.height(), "frequency": self.log(0.3, 100) / self.size}
+        layer.update(self.some({"octaves": self.integer(1, 12), "gain": self.uniform(0, 1.2),
+                                "lacunarity": self.uniform(1.3, 4), "scale": self.vector(0.2, 3),
+                                "bias": [self.size * c for c in self.vector(-2, 2)], "weight": self.uniform(-1.5, 1.5)}))
+        if kind == "worley":
+            layer.update(self.some({"distance": self.choice(["f1", "f2", "f2-f1"])}))
+        else:
+            layer.update(self.some({"gradient_modulation": self.uniform(0, 4)}))
+        if self.chance(0.25):
+            layer["warp"] = self.warp()
+        return layer
 
-def metaballs(draw, most, depth=0):
-    body = {"type": "metaballs", "spheres": spheres(draw, draw.integer(1, most), draw.uniform(0.1, 0.5))}
-    if draw.chance(0.5):
-        body["kernel"] = draw.choice(["gaussian", "metaball", "soft_object", "wyvill", "cauchy"])
-    if draw.chance(0.5):
-        body["a"] = body["b"] = draw.uniform(0.5, 4)
-    body.update(draw.some({"blend_exponent": draw.uniform(1, 6), "iso_value": draw.log(0.5, 2)}))
-    if draw.chance(0.3):
-        body["cutoff_radii"] = draw.uniform(1.5, 8)
-    if draw.chance(0.3):
-        body["subtract"] = spheres(draw, draw.integer(1, 8), 0.4)
-    if draw.chance(0.2):
-        body["warp"] = warp(draw)
-    if draw.chance(0.25 if depth == 0 else 0.1):
-        body["operations"] = [operation(draw, depth) for _ in range(draw.integer(1, 3))]
-    return body
+    def spots(self):
+        cell = self.size * self.log(0.05, 1)
+        layers = self.integer(1, 12) if self.chance(0.3) else self.integer(1, 3)
+        layer = {"type": "spots", "amplitude": self.height(), "cell_size": cell, "size": cell * self.log(0.05, 0.7),
+                 "density": self.log(0.05, 63), "layers": layers}
+        layer.update(self.some({"inverted": self.chance(0.5), "probability": self.uniform(0, 1),
+                                "even": self.chance(0.5), "reach": self.uniform(-0.5, 1),
+                                "least_weight": self.uniform(0, 1), "gaussian": self.uniform(-2, 2),
+                                "alpha": self.log(0.01, 100), "kappa": self.uniform(-2, 2),
+                                "beta": self.log(0.1, 100), "gamma": self.log(0.1, 10),
+                                "variances": [self.log(0.3, 3) for _ in range(3)], "sigma": self.log(0.5, 6),
+                                "lacunarity": self.uniform(1.2, 3), "gain": self.uniform(0, 4),
+                                "exponent": self.uniform(0, 2)}))
+        if self.chance(0.3):
+            layer["lattice"] = [[1, 0, 0], [self.uniform(-0.3, 0.3), self.uniform(0.7, 1.2), 0], [0, 0, 1]]
+        if self.chance(0.3):
+            layer["parts"] = [{"center": self.vector(-0.5, 0.5), "axes": [self.log(0.2, 1.5) for _ in range(3)],
+                               "turn": self.vector(-180, 180), "weight": self.uniform(-2, 2)}
+                              for _ in range(self.integer(1, 4))]
+        return layer
 
+    def sparse(self):
+        return {"type": "sparse", "amplitude": self.height(), "cell_size": self.size * self.log(0.02, 1),
+                **self.some({"levels": self.integer(1, 16), "probability": self.uniform(0, 1),
+                             "threshold": self.uniform(0, 1), "gain": self.uniform(0, 2), "merged": self.chance(0.5)})}
 
-def operation(draw, depth):
-    kind = draw.choice(["union", "intersection", "difference", "blend", "clean_union"])
-    fields = {"type": kind, "body": metaballs(draw, 6, depth + 1)}
-    if kind == "blend":
-        fields.update({"width": draw.size * draw.log(0.01, 0.5), "exponent": draw.uniform(1, 64)})
-    elif kind == "clean_union":
-        fields.update(draw.some({"bulge": draw.uniform(-0.1, 0.1) * draw.size,
-                                 "reach": [draw.size * draw.log(0.02, 0.5) for _ in range(2)]}))
-    else:
-        fields.update(draw.some({"alpha": draw.uniform(-0.9, 1)}))
-    return fields
+    def random_phase(self):
+        lowest = self.log(0.2, 20) / self.size
+        return {"type": "random_phase", "height_rms": abs(self.height()) / 3,
+                "cell_size": self.size * self.log(0.05, 2), "frequency_min": lowest,
+                "frequency_max": lowest * self.log(1, 20),
+                **self.some({"waves": self.integer(1, 128), "exponent": self.uniform(-8, 8),
+                             "direction": self.direction(), "spread": self.uniform(0, 1),
+                             "randomness": self.uniform(0, 1)})}
 
+    def phasor(self):
+        cell = self.size * self.log(0.05, 2)
+        return {"type": "phasor", "amplitude": self.height(), "cell_size": cell,
+                "frequency": min(self.log(0.3, 50) / self.size, 1000 / cell),
+                **self.some({"impulses_per_cell": self.integer(1, 16), "direction": self.direction(),
+                             "spread": self.uniform(0, 1),
+                             "profile": self.choice(["sine", "triangle", "sawtooth", "square"])})}
 
-def fractal(draw):
-    kind = draw.choice(["simplex", "perlin", "worley"])
-    layer = {"type": kind, "amplitude": draw.height(), "frequency": draw.log(0.3, 100) / draw.size}
-    layer.update(draw.some({"octaves": draw.integer(1, 12), "gain": draw.uniform(0, 1.2),
-                            "lacunarity": draw.uniform(1.3, 4), "scale": draw.vector(0.2, 3),
-                            "bias": [draw.size * c for c in draw.vector(-2, 2)],
-                            "weight": draw.uniform(-1.5, 1.5)}))
-    if kind == "worley":
-        layer.update(draw.some({"distance": draw.choice(["f1", "f2", "f2-f1"])}))
-    else:
-        layer.update(draw.some({"gradient_modulation": draw.uniform(0, 4)}))
-    if draw.chance(0.25):
-        layer["warp"] = warp(draw)
-    return layer
+    def gabor(self):
+        lobes = [[self.integer(1, 12) if self.chance(0.2) else self.integer(2, 6), self.uniform(-0.5, 0.5),
+                  self.uniform(-0.5, 0.5), self.log(1e-3, 1)] for _ in range(self.integer(1, 6))]
+        return {"type": "gabor", "pixel_size": self.size * self.log(3e-4, 0.1), "height_rms": abs(self.height()) / 5,
+                "lobes": lobes, **self.some({"impulses_per_kernel": self.integer(1, 128)})}
 
+    def population(self):
+        least = self.size * self.log(0.01, 0.1)
+        number = {"count": self.integer(0, 400)} if self.chance(0.7) else {"density": self.log(0.1, 30) / self.size**2}
+        return {**number, "least_diameter": least, "greatest_diameter": min(least * self.log(1, 20), 0.6 * self.size),
+                **self.some({"exponent": self.uniform(0.01, 10)})}
 
-def spots(draw):
-    cell = draw.size * draw.log(0.05, 1)
-    layers = draw.integer(1, 12) if draw.chance(0.3) else draw.integer(1, 3)
-    layer = {"type": "spots", "amplitude": draw.height(), "cell_size": cell, "size": cell * draw.log(0.05, 0.7),
-             "density": draw.log(0.05, 63), "layers": layers}
-    layer.update(draw.some({"inverted": draw.chance(0.5), "probability": draw.uniform(0, 1),
-                            "even": draw.chance(0.5), "reach": draw.uniform(-0.5, 1),
-                            "least_weight": draw.uniform(0, 1), "gaussian": draw.uniform(-2, 2),
-                            "alpha": draw.log(0.01, 100), "kappa": draw.uniform(-2, 2),
-                            "beta": draw.log(0.1, 100), "gamma": draw.log(0.1, 10),
-                            "variances": [draw.log(0.3, 3) for _ in range(3)], "sigma": draw.log(0.5, 6),
-                            "lacunarity": draw.uniform(1.2, 3), "gain": draw.uniform(0, 4),
-                            "exponent": draw.uniform(0, 2)}))
-    if draw.chance(0.3):
-        layer["lattice"] = [[1, 0, 0], [draw.uniform(-0.3, 0.3), draw.uniform(0.7, 1.2), 0], [0, 0, 1]]
-    if draw.chance(0.3):
-        layer["parts"] = [{"center": draw.vector(-0.5, 0.5), "axes": [draw.log(0.2, 1.5) for _ in range(3)],
-                           "turn": draw.vector(-180, 180), "weight": draw.uniform(-2, 2)}
-                          for _ in range(draw.integer(1, 4))]
-    return layer
+    def profile(self):
+        return self.some({"depth": self.uniform(0, 0.4), "rim_height": self.uniform(0, 0.2),
+                          "extent": self.uniform(1.05, 5), "flank": self.uniform(1, 8), "sharpness": self.log(1, 100),
+                          "smoothing": self.uniform(0, 1), "peak_height": self.uniform(0, 0.2),
+                          "peak_radius": self.uniform(0.01, 1), "terraces": self.integer(0, 16)})
 
+    def craters(self):
+        layer = {"type": "craters"}
+        if self.chance(0.8):
+            layer["population"] = {**self.population(), **self.some({
+                "greatest_age": self.log(0.1, 10), "depth_spread": self.uniform(0, 1),
+                "degradation": self.uniform(0, 1)})}
+        if self.chance(0.4) or "population" not in layer:
+            layer["craters"] = [{"direction": self.direction(), "diameter": self.size * self.log(0.05, 0.5),
+                                 **self.some({"age": self.uniform(0, 5)})} for _ in range(self.integer(1, 5))]
+        if self.chance(0.5):
+            layer["simple"] = self.profile()
+        if self.chance(0.4):
+            layer["complex_from"] = self.size * self.log(0.03, 0.5)
+            layer["complex"] = self.profile()
+        return layer
 
-def sparse(draw):
-    return {"type": "sparse", "amplitude": draw.height(), "cell_size": draw.size * draw.log(0.02, 1),
-            **draw.some({"levels": draw.integer(1, 16), "probability": draw.uniform(0, 1),
-                         "threshold": draw.uniform(0, 1), "gain": draw.uniform(0, 2),
-                         "merged": draw.chance(0.5)})}
+    def boulders(self):
+        layer = {"type": "boulders", **self.some({"smoothing": self.uniform(0, 1), "roughness": self.uniform(0, 0.5)})}
+        if self.chance(0.8):
+            burials = sorted(self.uniform(0, 1) for _ in range(2))
+            layer["population"] = {**self.population(), **self.some({
+                "axis_ratios": [1] + [self.uniform(0.05, 1) for _ in range(2)],
+                "ratio_spread": self.uniform(0, 0.9), "greatest_tilt": self.uniform(0, 90)}),
+                "least_burial": burials[0], "greatest_burial": burials[1]}
+        else:
+            longest = self.size * self.log(0.05, 0.4)
+            layer["boulders"] = [{"direction": self.direction(), "axes": [longest * self.uniform(0.1, 1) for _ in range(3)],
+                                  **self.some({"heading": self.uniform(-360, 360), "tilt": self.uniform(-180, 180),
+                                               "burial": self.uniform(0, 1)})} for _ in range(self.integer(1, 5))]
+        return layer
 
-
-def random_phase(draw):
-    lowest = draw.log(0.2, 20) / draw.size
-    return {"type": "random_phase", "height_rms": abs(draw.height()) / 3,
-            "cell_size": draw.size * draw.log(0.05, 2), "frequency_min": lowest,
-            "frequency_max": lowest * draw.log(1, 20),
-            **draw.some({"waves": draw.integer(1, 128), "exponent": draw.uniform(-8, 8),
-                         "direction": draw.direction(), "spread": draw.uniform(0, 1),
-                         "randomness": draw.uniform(0, 1)})}
-
-
-def phasor(draw):
-    cell = draw.size * draw.log(0.05, 2)
-    return {"type": "phasor", "amplitude": draw.height(), "cell_size": cell,
-            "frequency": min(draw.log(0.3, 50) / draw.size, 1000 / cell),
-            **draw.some({"impulses_per_cell": draw.integer(1, 16), "direction": draw.direction(),
-                         "spread": draw.uniform(0, 1),
-                         "profile": draw.choice(["sine", "triangle", "sawtooth", "square"])})}
-
-
-def gabor(draw):
-    lobes = [[draw.integer(1, 12) if draw.chance(0.2) else draw.integer(2, 6), draw.uniform(-0.5, 0.5),
-              draw.uniform(-0.5, 0.5), draw.log(1e-3, 1)] for _ in range(draw.integer(1, 6))]
-    return {"type": "gabor", "pixel_size": draw.size * draw.log(3e-4, 0.1),
-            "height_rms": abs(draw.height()) / 5, "lobes": lobes,
-            **draw.some({"impulses_per_kernel": draw.integer(1, 128)})}
-
-
-def population(draw):
-    least = draw.size * draw.log(0.01, 0.1)
-    number = {"count": draw.integer(0, 400)} if draw.chance(0.7) else {
-        "density": draw.log(0.1, 30) / draw.size**2}
-    return {**number, "least_diameter": least, "greatest_diameter": min(least * draw.log(1, 20), 0.6 * draw.size),
-            **draw.some({"exponent": draw.uniform(0.01, 10)})}
-
-
-def profile(draw):
-    return draw.some({"depth": draw.uniform(0, 0.4), "rim_height": draw.uniform(0, 0.2),
-                      "extent": draw.uniform(1.05, 5), "flank": draw.uniform(1, 8),
-                      "sharpness": draw.log(1, 100), "smoothing": draw.uniform(0, 1),
-                      "peak_height": draw.uniform(0, 0.2), "peak_radius": draw.uniform(0.01, 1),
-                      "terraces": draw.integer(0, 16)})
-
-
-def craters(draw):
-    layer = {"type": "craters"}
-    if draw.chance(0.8):
-        layer["population"] = {**population(draw), **draw.some({
-            "greatest_age": draw.log(0.1, 10), "depth_spread": draw.uniform(0, 1),
-            "degradation": draw.uniform(0, 1)})}
-    if draw.chance(0.4) or "population" not in layer:
-        layer["craters"] = [{"direction": draw.direction(), "diameter": draw.size * draw.log(0.05, 0.5),
-                             **draw.some({"age": draw.uniform(0, 5)})} for _ in range(draw.integer(1, 5))]
-    if draw.chance(0.5):
-        layer["simple"] = profile(draw)
-    if draw.chance(0.4):
-        layer["complex_from"] = draw.size * draw.log(0.03, 0.5)
-        layer["complex"] = profile(draw)
-    return layer
-
-
-def boulders(draw):
-    layer = {"type": "boulders", **draw.some({"smoothing": draw.uniform(0, 1),
-                                              "roughness": draw.uniform(0, 0.5)})}
-    if draw.chance(0.8):
-        burials = sorted(draw.uniform(0, 1) for _ in range(2))
-        layer["population"] = {**population(draw), **draw.some({
-            "axis_ratios": [1] + [draw.uniform(0.05, 1) for _ in range(2)],
-            "ratio_spread": draw.uniform(0, 0.9), "greatest_tilt": draw.uniform(0, 90)}),
-            "least_burial": burials[0], "greatest_burial": burials[1]}
-    else:
-        longest = draw.size * draw.log(0.05, 0.4)
-        layer["boulders"] = [{"direction": draw.direction(),
-                              "axes": [longest * draw.uniform(0.1, 1) for _ in range(3)],
-                              **draw.some({"heading": draw.uniform(-360, 360), "tilt": draw.uniform(-180, 180),
-                                           "burial": draw.uniform(0, 1)})} for _ in range(draw.integer(1, 5))]
-    return layer
+    def use(self, layer, before, has_group):
+        """Ties a layer of noise to a group, to earlier layers by a mask and a join. Returns whether it warps."""
+        if has_group and self.chance(0.3):
+            layer["locality"] = {"group": "some", "width": self.size * self.log(1e-3, 1)}
+        masking = [b["name"] for b in before if b["type"] not in ("craters", "boulders")]
+        if masking and self.chance(0.5):
+            border = [self.height(), self.height()]
+            layer["mask"] = {"layer": self.choice(masking), "from": border[0], "to": border[1]}
+        if not before or self.chance(0.4):
+            return False
+        kind = self.choice(["add", "replace", "blend", "warp", "mask"])
+        layer["combine"] = {"type": kind}
+        if kind == "blend":
+            layer["combine"].update(self.some({"operator": self.choice(["union", "intersection"]),
+                                               "width": self.size * self.log(1e-3, 0.1)}))
+        if kind == "warp":
+            layer["combine"]["direction"] = self.direction()
+        return kind == "warp"
 
 
-MAKERS = [fractal, fractal, spots, sparse, random_phase, phasor, gabor, gabor, craters, boulders]
-
-
-def use(draw, layer, before, has_group):
-    """Ties a layer of noise to a group, to earlier layers by a mask and a join. Returns whether it warps."""
-    if has_group and draw.chance(0.3):
-        layer["locality"] = {"group": "some", "width": draw.size * draw.log(1e-3, 1)}
-    masking = [b["name"] for b in before if b["type"] not in ("craters", "boulders")]
-    if masking and draw.chance(0.5):
-        border = [draw.height(), draw.height()]
-        layer["mask"] = {"layer": draw.choice(masking), "from": border[0], "to": border[1]}
-    if not before or draw.chance(0.4):
-        return False
-    kind = draw.choice(["add", "replace", "blend", "warp", "mask"])
-    layer["combine"] = {"type": kind}
-    if kind == "blend":
-        layer["combine"].update(draw.some({"operator": draw.choice(["union", "intersection"]),
-                                           "width": draw.size * draw.log(1e-3, 0.1)}))
-    if kind == "warp":
-        layer["combine"]["direction"] = draw.direction()
-    return kind == "warp"
+MAKERS = [Draw.fractal, Draw.fractal, Draw.spots, Draw.sparse, Draw.random_phase, Draw.phasor, Draw.gabor, Draw.gabor, Draw.craters, Draw.boulders]
 
 
 def recipe(number):
     draw = Draw(number)
-    body = metaballs(draw, 30)
+    body = draw.metaballs(30)
     has_group = draw.chance(0.5)
     if has_group:
         members = range(len(body["spheres"]))
         body["groups"] = {"some": sorted(draw.random.sample(members, draw.integer(1, len(members))))}
     layers, warped = [], False
     for name in NAMES_OF_LAYERS[:draw.integer(0, 5)]:
-        maker = draw.choice([m for m in MAKERS if not (warped and m is gabor)])
+        maker = draw.choice([m for m in MAKERS if not (warped and m is Draw.gabor)])
         layer = {**maker(draw), "name": name}
         if draw.chance(0.2):
             layer["seed"] = draw.integer(0, (1 << 30) - 1)
-        if maker not in (craters, boulders):
-            warped = use(draw, layer, layers, has_group) or warped
+        if maker not in (Draw.craters, Draw.boulders):
+            warped = draw.use(layer, layers, has_group) or warped
         layers.append(layer)
     result = {"format_version": 1, "length_unit": draw.choice(["m", "km"]), "seed": draw.integer(0, 1 << 30),
               "body": body, "layers": layers}
     if draw.chance(0.15):
         result["erosion"] = {"talus_angle": draw.uniform(1, 85), "iterations": draw.integer(1, 2000),
-                             **draw.some({"density": draw.log(1, 30000),
-                                          "rotation_period": draw.log(1, 100)})}
+                             **draw.some({"density": draw.log(1, 30000), "rotation_period": draw.log(1, 100)})}
     return result, draw.random.randint(30, 60)

@@ -51,8 +51,8 @@ std::vector<BandVariance> octaves_of(const PowerSpectrum& fitted, const PowerSpe
 }  // namespace
 
 double mean_root_of_scatter(double scatter) {
-  // Gamma(m + 1/2) / (Gamma(m) sqrt(m)) for m = 1 / scatter: eight steps of the recurrence
-  // Gamma(m + 1) = m Gamma(m), then the asymptotic series.
+  // Gamma(m + 1/2) / (Gamma(m) sqrt(m)) for m = 1 / scatter: eight steps of the recurrence Gamma(m + 1) = m
+  // Gamma(m), then the asymptotic series.
   const double m = 1.0 / scatter;
   double factor = 1.0;
   for (int k = 0; k < 8; ++k) factor *= (m + k) / (m + k + 0.5);

@@ -39,9 +39,9 @@ struct LobeQuality {
 //   d^2 = sum (sqrt F - sqrt I)^2 / T,    E d^2 = (sum F + T)/T - 2 c sum sqrt(F S) / T,
 //   t^2 = (sum F + T)/T - ((sum F + T)/T - d^2) / c,
 //
-// and the perfect model F = S scores d^2 = 2 - 2 c. t^2 has the standard deviation
-// s = 2 sqrt(2 v n sum F^2) / sum F, where v = Var(sqrt(g)/c - g/2) is 0.0232 for one periodogram, the 2
-// under the root stands for f and -f, and n for the correlation of neighbours under a taper.
+// and the perfect model F = S scores d^2 = 2 - 2 c. t^2 has the standard deviation s = 2 sqrt(2 v n sum F^2)
+// / sum F, where v = Var(sqrt(g)/c - g/2) is 0.0232 for one periodogram, the 2 under the root stands for f
+// and -f, and n for the correlation of neighbours under a taper.
 //
 // A perfect fit of lobes still inherits the error e of the estimate that it was fitted to
 // (SpectrumEstimate::standard_error). A fit is weak if t^2 is above e^2 + 3 s + kVisibleResidual^2.

@@ -2,7 +2,6 @@
 #include <unistd.h>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -104,11 +103,6 @@ TEST(Sha256, Files) {
   EXPECT_THROW(sha256_of_file(std::filesystem::temp_directory_path()), InputError);
 }
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // Bytes that compress a little, in several pieces of a stream.
 std::string noisy(std::size_t size) {
   std::string text;
@@ -120,7 +114,7 @@ std::string packed(const testing::ScratchFolder& folder, const std::string& text
   OutputFile file(folder / "a.zst");
   file.write(text.data(), text.size());
   file.commit();
-  return content_of(folder / "a.zst");
+  return text_of(folder / "a.zst");
 }
 
 TEST(ZstdStream, ContentComesBack) {
@@ -143,7 +137,7 @@ TEST(ZstdStream, SeekingActsOnTheContent) {
   file.write("head", 4);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.zst"));
   file.commit();
-  EXPECT_EQ(unpack_zstd(content_of(folder / "a.zst"), 100), "head tail");
+  EXPECT_EQ(unpack_zstd(text_of(folder / "a.zst"), 100), "head tail");
 }
 
 // 10 MB of zeros take some hundred bytes.

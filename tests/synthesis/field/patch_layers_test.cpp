@@ -314,8 +314,7 @@ TEST(PatchLayers, WholeBodyListsWhatItLeavesOut) {
     const ImplicitField patch(ball(1e6, layer), "ball", PatchCube{{1e6, 0, 0}, 1.0});
     EXPECT_TRUE(patch.left_out().empty()) << name;
   }
-  // Eight octaves, each twice as fine and half as high as the one before. The last are beyond 2^20
-  // cells.
+  // Eight octaves, each twice as fine and half as high as the one before. The last are beyond 2^20 cells.
   FractalLayer octaves = testing::fractal_layer(1.0, 200.0, 8);
   octaves.lacunarity = 2.0;
   Recipe recipe = ball(1.0, octaves);

@@ -4,22 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "numerics/errors.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::refusal_of;
 using testing::ScratchFolder;
-
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 TEST(OptionTable, ValuesAreReadAsTheirTypesSay) {
   OptionTable options;
@@ -69,7 +62,7 @@ TEST(OptionTable, WrongValuesAreRefusedAndChangeNothing) {
   options.add_option("--kind", kind, "").check(one_of({"a", "b"}));
   options.add_option("--box", box, "").expected(4);
   const auto refused = [&](const char* name, const std::vector<std::string>& words) {
-    return refusal([&] { OptionTable::set(*options.find(name), words); });
+    return refusal_of([&] { OptionTable::set(*options.find(name), words); });
   };
   EXPECT_EQ(refused("count", {"0"}), "--count: must be a number between 1 and 100, is 0");
   EXPECT_EQ(refused("count", {"1.5"}), "--count: must be a whole number, is \"1.5\"");
@@ -91,11 +84,11 @@ TEST(OptionTable, OptionsMayNeedAndExcludeOthers) {
   options.add_flag("--second", b, "").needs(first);
   options.add_flag("--third", c, "").excludes(first);
   OptionTable::set(*options.find("second"), {"true"});
-  EXPECT_EQ(refusal([&] { options.check_combination(); }), "--second requires --first");
+  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "--second requires --first");
   OptionTable::set(*options.find("first"), {"true"});
-  EXPECT_EQ(refusal([&] { options.check_combination(); }), "");
+  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "no error");
   OptionTable::set(*options.find("third"), {"true"});
-  EXPECT_EQ(refusal([&] { options.check_combination(); }), "--third excludes --first");
+  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "--third excludes --first");
 }
 
 // A table with an input, two outputs, and an output whose name leads to another file.
@@ -114,7 +107,7 @@ struct Files {
   std::string refused(const std::vector<std::pair<const char*, fs::path>>& names) {
     for (const auto& row : options.rows()) row->words.clear();
     for (const auto& [name, file] : names) OptionTable::set(*options.find(name), {file.string()});
-    return refusal([&] { options.check_files(); });
+    return refusal_of([&] { options.check_files(); });
   }
 };
 
@@ -123,15 +116,15 @@ TEST(OptionTable, NoOutputIsAnInputOrAnotherOutput) {
   const fs::path a = folder / "a.json", b = folder / "b.json";
   folder.write("a.json", "a");
   Files files;
-  EXPECT_EQ(files.refused({{"input", a}, {"output", b}, {"list", (folder / "c.csv")}}), "");
-  EXPECT_NE(files.refused({{"input", a}, {"output", a}}), "");
-  EXPECT_NE(files.refused({{"output", b}, {"list", b}}), "");
-  EXPECT_NE(files.refused({{"output", b}, {"list", (folder / "./x/../b.json")}}), "");
-  EXPECT_NE(files.refused({{"input", a}, {"map", (folder / "a.tif")}}), "");
-  EXPECT_NE(files.refused({{"map", (folder / "b.tif")}, {"output", b}}), "");
-  EXPECT_NE(files.refused({{"output", ""}}), "");
+  EXPECT_EQ(files.refused({{"input", a}, {"output", b}, {"list", (folder / "c.csv")}}), "no error");
+  EXPECT_NE(files.refused({{"input", a}, {"output", a}}), "no error");
+  EXPECT_NE(files.refused({{"output", b}, {"list", b}}), "no error");
+  EXPECT_NE(files.refused({{"output", b}, {"list", (folder / "./x/../b.json")}}), "no error");
+  EXPECT_NE(files.refused({{"input", a}, {"map", (folder / "a.tif")}}), "no error");
+  EXPECT_NE(files.refused({{"map", (folder / "b.tif")}, {"output", b}}), "no error");
+  EXPECT_NE(files.refused({{"output", ""}}), "no error");
   fs::create_hard_link(a, (folder / "same.json"));
-  EXPECT_NE(files.refused({{"input", a}, {"output", (folder / "same.json")}}), "");
+  EXPECT_NE(files.refused({{"input", a}, {"output", (folder / "same.json")}}), "no error");
 }
 
 TEST(OptionTable, NamesOfMembersStandForManyFiles) {
@@ -139,11 +132,11 @@ TEST(OptionTable, NamesOfMembersStandForManyFiles) {
   const fs::path input = folder / "body_0000007.json";
   folder.write("body_0000007.json", "a");
   Files files;
-  EXPECT_NE(files.refused({{"input", input}, {"output", (folder / "body_{member}.json")}}), "");
-  EXPECT_NE(files.refused({{"list", (folder / "b3.ply")}, {"output", (folder / "b{n}.ply")}}), "");
-  EXPECT_EQ(files.refused({{"input", input}, {"output", (folder / "rock_{member}.json")}}), "");
+  EXPECT_NE(files.refused({{"input", input}, {"output", (folder / "body_{member}.json")}}), "no error");
+  EXPECT_NE(files.refused({{"list", (folder / "b3.ply")}, {"output", (folder / "b{n}.ply")}}), "no error");
+  EXPECT_EQ(files.refused({{"input", input}, {"output", (folder / "rock_{member}.json")}}), "no error");
   EXPECT_EQ(files.refused({{"list", folder / "{member}.relief.png"}, {"output", folder / "{member}.png"}}),
-            "");
+            "no error");
 }
 
 TEST(OptionTable, AFileThatTurnsUpLaterIsKept) {
@@ -151,8 +144,8 @@ TEST(OptionTable, AFileThatTurnsUpLaterIsKept) {
   folder.write("image.png", "a");
   Files files;
   OptionTable::set(*files.options.find("output"), {(folder / "image.png").string()});
-  EXPECT_NE(refusal([&] { files.options.require_not_written((folder / "image.png")); }), "");
-  EXPECT_EQ(refusal([&] { files.options.require_not_written((folder / "other.png")); }), "");
+  EXPECT_NE(refusal_of([&] { files.options.require_not_written((folder / "image.png")); }), "no error");
+  EXPECT_EQ(refusal_of([&] { files.options.require_not_written((folder / "other.png")); }), "no error");
 }
 
 }  // namespace

@@ -1,10 +1,15 @@
-"""The recipe of the asteroid for which the speed of synthesis is stated: 500 metaballs, length 1."""
+#!/usr/bin/env python3
+"""Recipes of bodies for which the speed of synthesis is stated.
+
+    recipes.py > sponge.json && synth sponge.json --resolution 4864 --predict -o sponge.ply     # the body with much surface
+"""
+import json
 import math
 import random
 
 
-def recipe(bare):
-    """Hills alone over the body, or hills, plates, craters and the main bands of gravel."""
+def asteroid(bare):
+    """An asteroid of 500 metaballs, length 1: hills alone over the body, or hills, plates, craters and the main bands of gravel."""
     draw = random.Random(3)
     spheres = []
     for i in range(500):
@@ -22,3 +27,19 @@ def recipe(bare):
                         [3, -0.0253, 0.0255, 0.0031], [4, -0.0137, 0.0278, 0.0032], [4, 0.0276, 0.0001, 0.0012]]}  # fmt: skip
     return {"format_version": 1, "length_unit": "km", "body": {"type": "metaballs", "blend_exponent": 3, "spheres": spheres},
             "layers": [hills] if bare else [hills, plates, craters, gravel]}
+
+
+def sponge(side=7):
+    """A body with much surface: metaballs on a lattice of 1 km, joined by necks, under fractal noise."""
+    draw = random.Random(4)
+    spheres = []
+    for i in range(side**3):
+        center = (i // side**2, i // side % side, i % side)
+        moved = [round(x + draw.uniform(-0.06, 0.06), 3) for x in center]
+        spheres.append([*moved, round(draw.uniform(0.42, 0.46), 3)])
+    noise = {"type": "simplex", "amplitude": 0.01, "frequency": 4, "octaves": 4}
+    return {"format_version": 1, "length_unit": "km", "seed": 5, "body": {"type": "metaballs", "spheres": spheres}, "layers": [noise]}
+
+
+if __name__ == "__main__":
+    print(json.dumps(sponge()))

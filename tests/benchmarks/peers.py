@@ -1,6 +1,6 @@
-"""TerrainGen's own asteroid (`pip install terraingenpy`) at any number of triangles, and our body most like it.
+"""FastNoise2, and TerrainGen's own asteroid (`pip install terraingenpy`) at any number of triangles with our body most like it.
 
-TerrainGen displaces an ellipsoid along its normals: five octaves of simplex noise and craters by a power law, as a
+FastNoise2 comes in no package, so it is built the first time (some minutes). TerrainGen displaces an ellipsoid along its normals: five octaves of simplex noise and craters by a power law, as a
 height field on the faces of a cube, written as GLB. It makes no body of another form.
 """
 import importlib.util
@@ -8,6 +8,8 @@ import json
 import math
 import pathlib
 import sys
+
+from measure import ROOT, Run
 
 EXAMPLE = "examples/config/planets/example_planets_asteroid_body_mesh.json"
 
@@ -35,3 +37,19 @@ def recipe_like_it():
             "layers": [{"type": "simplex", "amplitude": 8, "frequency": 1 / 150, "octaves": 5},
                        {"type": "craters", "population": {"count": 450, "least_diameter": 4, "greatest_diameter": 60,
                                                           "exponent": 2}}]}
+
+
+def fastnoise2_rates(sources):
+    """The program of fastnoise2_rates.cpp; `sources` holds FastNoise2 and FastSIMD side by side."""
+    sources = sources.resolve()
+    build = sources / "build"
+    if not (build / "build.ninja").exists():
+        Run("cmake", "-S", sources / "FastNoise2", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+            "-DFASTNOISE2_TOOLS=OFF", f"-DCPM_FastSIMD_SOURCE={sources / 'FastSIMD'}")  # fmt: skip
+    Run("cmake", "--build", build)
+    library, = build.rglob("libFastNoise.a")
+    program, source = build / "fastnoise2_rates", ROOT / "tests/benchmarks/fastnoise2_rates.cpp"
+    if not program.exists() or program.stat().st_mtime < source.stat().st_mtime:
+        Run("c++", "-std=c++20", "-O3", "-DFASTNOISE_STATIC_LIB", f"-I{ROOT}", f"-I{sources / 'FastNoise2/include'}",
+            f"-I{sources / 'FastSIMD/include'}", f"-I{build / 'include'}", source, library, "-o", program)  # fmt: skip
+    return program
