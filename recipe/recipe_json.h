@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "recipe/recipe.h"
 
@@ -20,6 +21,10 @@ Recipe read_recipe(const std::filesystem::path& file);
 // Reads and validates the recipe in the bytes of a file, in either form. `name` is the file's name in errors.
 // Throws InputError.
 Recipe parse_recipe(std::string_view text, const std::string& name);
+
+// The names of images that the layers of a recipe's file state, whatever else is right or wrong in it;
+// heights are not decoded. Throws InputError for a file that is not JSON and no compact recipe.
+std::vector<std::string> named_images(const std::filesystem::path& file);
 
 // Throws InputError at the first field that breaks a rule of recipe.h.
 void validate_recipe(const Recipe& recipe, const std::string& name);

@@ -146,8 +146,12 @@ class FieldReader final : public FieldVisitor {
 
 }  // namespace
 
+static json document_of(std::string_view text, const std::string& name) {
+  return is_compact(text) ? parse_compact(text, name) : parse_json(text, name);
+}
+
 Recipe parse_recipe(std::string_view text, const std::string& name) {
-  const json document = is_compact(text) ? parse_compact(text, name) : parse_json(text, name);
+  const json document = document_of(text, name);
   const Place place(name);
   Recipe recipe;
   FieldReader(document, place).visit(recipe);
@@ -157,6 +161,18 @@ Recipe parse_recipe(std::string_view text, const std::string& name) {
 
 Recipe read_recipe(const std::filesystem::path& file) {
   return parse_recipe(read_json_text(file), file.string());
+}
+
+std::vector<std::string> named_images(const std::filesystem::path& file) {
+  const json document = document_of(read_json_text(file), file.string());
+  std::vector<std::string> names;
+  const auto layers = document.find("layers");
+  if (!document.is_object() || layers == document.end()) return names;
+  for (const json& layer : *layers) {
+    const auto image = layer.find("image");
+    if (layer.is_object() && image != layer.end() && image->is_string()) names.push_back(*image);
+  }
+  return names;
 }
 
 }  // namespace astrolith

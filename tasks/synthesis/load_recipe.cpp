@@ -130,11 +130,8 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
 std::vector<std::filesystem::path> recipe_and_images(const std::vector<std::string>& names) {
   std::vector<std::filesystem::path> files(names.begin(), names.end());
   for (const std::string& name : names) try {
-      for (Layer& layer : read_recipe(name).layers) {
-        const NamedImage* named = image_of(layer);
-        if (named != nullptr && !named->image.empty())
-          files.push_back(std::filesystem::path(name).parent_path() / named->image);
-      }
+      for (const std::string& image : named_images(name))
+        files.push_back(std::filesystem::path(name).parent_path() / image);
     } catch (const std::exception&) {  // is told where the recipe is read
     }
   return files;
