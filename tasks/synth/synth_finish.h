@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/program.h"
 #include "recipe/recipe.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
@@ -17,7 +17,7 @@ struct FinishOptions {
   bool wanted() const { return !body.empty() && body != "none"; }
 };
 
-void declare_finish_options(Program& program, FinishOptions& options);
+void declare_finish_options(Job& job, FinishOptions& options);
 
 // Throws InputError for options that do not belong together.
 void check_finish(const FinishOptions& options);
@@ -25,7 +25,7 @@ void check_finish(const FinishOptions& options);
 // The recipe with the landforms that were asked for. Says on stderr and in the summary what of them is
 // measured and what is drawn. `file` names the recipe. Throws InputError where a patch of this side (0: none)
 // would hold more landforms than a layer draws.
-Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe, const std::string& file,
+Recipe finished(Job& job, const FinishOptions& options, const Recipe& recipe, const std::string& file,
                 double patch_side);
 
 }  // namespace astrolith

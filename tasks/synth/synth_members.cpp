@@ -1,4 +1,4 @@
-#include "apps/synth/synth_members.h"
+#include "tasks/synth/synth_members.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/processor_clock.h"
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
@@ -101,49 +102,45 @@ std::vector<fs::path> names_of(BodyRequest member) {
 }
 
 // The SHA-256 of what all members have in common: the recipe and the options that change files.
-std::string hash_of_family(const Program& program, const Recipe& recipe) {
-  constexpr std::array kNoEffect{"base",         "device",       "members",    "manifest", "preview",
-                                 "preview-maps", "feature-list", "max-memory", "out",      "height-map"};
+std::string hash_of_family(const Job& job, const Recipe& recipe) {
+  constexpr std::array kNoEffect{"base", "device", "members", "max-memory"};
   Recipe undescribed = recipe;
   undescribed.description.clear();
   std::string text = recipe_to_json(undescribed);
-  for (const auto& [name, value] : program.options.given()) {
+  for (const auto& [name, value] : job.options.given()) {
     if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
     text += name + "=" + value + "\n";
   }
   return sha256_of(text);
 }
 
-// While it lives, the program says nothing and writes another summary.
-class SilencedProgram {
+// While it lives, the job says nothing and fills another summary.
+class SilencedJob {
  public:
-  explicit SilencedProgram(Program& program)
-      : program_(program),
-        quiet_(std::exchange(program.quiet, true)),
-        summary_(std::exchange(program.summary, {})) {}
-  SilencedProgram(const SilencedProgram&) = delete;
-  SilencedProgram& operator=(const SilencedProgram&) = delete;
-  ~SilencedProgram() {
-    program_.quiet = quiet_;
-    program_.summary = std::move(summary_);
+  explicit SilencedJob(Job& job)
+      : job_(job), quiet_(std::exchange(job.quiet, true)), summary_(std::exchange(job.summary, {})) {}
+  SilencedJob(const SilencedJob&) = delete;
+  SilencedJob& operator=(const SilencedJob&) = delete;
+  ~SilencedJob() {
+    job_.quiet = quiet_;
+    job_.summary = std::move(summary_);
   }
 
  private:
-  Program& program_;
+  Job& job_;
   bool quiet_;
   Json summary_;
 };
 
 class MemberMaker {
  public:
-  MemberMaker(Program& program, const MembersRequest& request, const BodyRequest& body,
-              const MemberSource& source)
-      : program_(program),
+  MemberMaker(Job& job, const MembersRequest& request, const BodyRequest& body, const MemberSource& source)
+      : job_(job),
         body_(body),
         source_(source),
         file_(request.manifest),
         manifest_(request.manifest),
-        family_(hash_of_family(program, source.recipe)) {}
+        family_(hash_of_family(job, source.recipe)) {}
 
   const Manifest& manifest() const { return manifest_; }
 
@@ -170,7 +167,7 @@ class MemberMaker {
     make_folders(number);
     const auto start = std::chrono::steady_clock::now();
     BodyRequest body = numbered(body_, number);
-    const SilencedProgram silenced(program_);
+    const SilencedJob silenced(job_);
     const FamilyMember member = source_.draw(number);
     Json line = {
         {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
@@ -180,10 +177,10 @@ class MemberMaker {
         body.mesh.preview.look.look_from(member.view), line["view"] = json_of(member.view);
       if (family->any_sun) body.mesh.preview.look.light_from(member.sun), line["sun"] = json_of(member.sun);
     }
-    if (!body.output.empty()) make_mesh(program_, body.mesh, member.recipe, source_.file, body.output);
+    if (!body.output.empty()) make_mesh(job_, body.mesh, member.recipe, source_.file, body.output);
     for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
                                "closed", "manifold", "genus", "components"}) {
-      if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
+      if (job_.summary.contains(figure)) line[figure] = job_.summary[figure];
     }
     if (!body.recipe.empty()) write_loaded_recipe(member.recipe, body.recipe);
     if (file_.empty()) return;
@@ -204,10 +201,10 @@ class MemberMaker {
  private:
   // Two programs with changes that no commit holds differ by the digest of these changes.
   std::string version() const {
-    return program_.tool() + (kCodeVersion.changes.empty() ? "" : " " + kCodeVersion.changes);
+    return job_.tool() + (kCodeVersion.changes.empty() ? "" : " " + kCodeVersion.changes);
   }
 
-  Program& program_;
+  Job& job_;
   const BodyRequest& body_;
   const MemberSource& source_;
   fs::path file_;  // the manifest; empty = none
@@ -220,7 +217,7 @@ struct Tally {
 };
 
 // Makes one member. False where it failed, which has been said then.
-bool make_or_report(Program& program, const MemberMaker& maker, std::uint64_t number) {
+bool make_or_report(Job& job, const MemberMaker& maker, std::uint64_t number) {
   std::string reason;
   try {
     maker.make(number);
@@ -230,14 +227,14 @@ bool make_or_report(Program& program, const MemberMaker& maker, std::uint64_t nu
   } catch (const std::exception& e) {
     reason = e.what();
   }
-  if (!Program::interrupted()) program.report_failure(fmt::format("member {}: {}", number, reason));
+  if (!job.stopped()) job.report_failure(fmt::format("member {}: {}", number, reason));
   return false;
 }
 
 // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by one.
-Tally make_range(Program& program, const MemberMaker& maker, const MemberRange& range) {
+Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range) {
   const UnsyncedOutputs unsynced;
-  const Progress progress = program.progress("members");
+  const Progress progress = job.progress("members");
   Tally tally;
   for (std::uint64_t number = range.begin; number < range.end; ++number) {
     const double share =
@@ -245,43 +242,44 @@ Tally make_range(Program& program, const MemberMaker& maker, const MemberRange& 
     if (!progress(share, fmt::format("member {}", number))) break;
     if (maker.is_finished(number)) {
       ++tally.there;
-    } else if (make_or_report(program, maker, number)) {
+    } else if (make_or_report(job, maker, number)) {
       ++tally.made;
-    } else if (!Program::interrupted()) {
+    } else if (!job.stopped()) {
       ++tally.failed;
     }
   }
-  if (!Program::interrupted()) progress(1.0, "");
+  if (!job.stopped()) progress(1.0, "");
   return tally;
 }
 
 // Makes the folder of the summary, and throws InputError where the summary cannot be written.
-void prepare_summary(const Program& program) {
-  const fs::path file = program.summary_file;
-  if (file.empty()) return;
+void prepare_summary(const Job& job) {
+  const OptionRow* const row = job.options.find("--summary");
+  if (row == nullptr || row->words.empty()) return;
+  const fs::path file = row->words.front();
   if (file.has_parent_path()) make_output_folder(file.parent_path());
   require_writable(file);
 }
 
 }  // namespace
 
-void declare_members_options(Program& program, MembersRequest& request) {
-  program.makes_folders = [&request] { return !request.range.empty(); };
+void declare_members_options(Job& job, MembersRequest& request) {
   Option members =
-      program.app
+      job.options
           .add_option(
               "--members", request.range,
               "make bodies A to B - 1 of the recipe instead, each with files of its own: {member} in "
               "their names stands for its number. They are members of the recipe's family, or else have "
               "their numbers as seeds; with --vary they are the variations of these numbers. Member "
               "4711 is the same body on every machine")
-          .placeholder("A:B");
-  program.app.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
+          .placeholder("A:B")
+          .makes_folders();
+  job.options.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
       .needs(members)
-      .excludes(program.app.option("--output"))
+      .excludes(job.options.option("--output"))
       .placeholder("DIR")
       .writes([](const auto& words) { return std::vector{fs::path(words.front()) / "{member}.ply"}; });
-  program.app
+  job.options
       .add_option("--manifest", request.manifest,
                   "with --members: a file that gets a line of JSON for each finished member. Members that it "
                   "has, and whose files are whole, are not made again")
@@ -315,31 +313,30 @@ void check_members(const MembersRequest& request, BodyRequest body) {
         "or add -o");
 }
 
-void make_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+void make_members(Job& job, const MembersRequest& request, const BodyRequest& body,
                   const MemberSource& source) {
   const MemberRange range = parse_range(request.range);
   const std::string set = request.manifest.empty() ? "members" : request.manifest.string();
   if (!body.output.empty()) check_mesh_request(body.mesh, source.recipe, source.file);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
-  const MemberMaker maker(program, request, body, source);
+  const MemberMaker maker(job, request, body, source);
   maker.require_same_set();
   // Folders are made, and what cannot be written is refused, before any work.
   maker.make_folders(range.begin);
   const BodyRequest first = numbered(body, range.begin);
-  check_mesh_outputs(program, first.mesh, first.output);
-  prepare_summary(program);
+  check_mesh_outputs(job, first.mesh, first.output);
+  prepare_summary(job);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
-    program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
-                            counted(static_cast<std::size_t>(unreadable), "line")));
+    job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
+                        counted(static_cast<std::size_t>(unreadable), "line")));
   }
-  const Tally tally = make_range(program, maker, range);
+  const Tally tally = make_range(job, maker, range);
   for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
-  program.summary["members"] = {
-      {"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
-  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
-                          tally.failed, range.end - range.begin,
-                          Program::interrupted() ? "; stopped, the same command goes on" : ""));
+  job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
+  job.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
+                      tally.failed, range.end - range.begin,
+                      job.stopped() ? "; stopped, the same command goes on" : ""));
 }
 
 namespace {
@@ -356,42 +353,42 @@ std::vector<std::uint64_t> sampled_members(const MemberRange& range) {
 
 }  // namespace
 
-void predict_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
                      const MemberSource& source) {
   check_mesh_request(body.mesh, source.recipe, source.file);
   const fs::path output = body.output.empty() && body.recipe.empty() ? "{member}.ply" : body.output;
   if (!output.empty()) check_mesh_name(body.mesh, output);
-  prepare_summary(program);
+  prepare_summary(job);
   const MemberRange range = parse_range(request.range);
   const std::vector<std::uint64_t> numbers = sampled_members(range);
   const std::uint64_t members = range.end - range.begin;
   const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
-  const double start = program.seconds();
+  const double start = job.seconds();
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
-    const double on_clock = program.seconds(), of_processor = Program::processor_seconds();
-    const SilencedProgram silenced(program);
+    const double on_clock = job.seconds(), of_processor = processor_seconds();
+    const SilencedJob silenced(job);
     const Recipe member = source.draw(number).recipe;
     if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
     if (output.empty()) continue;
-    make_mesh(program, body.mesh, member, source.file, output);
-    const Json& figures = program.summary["predicted"];
+    make_mesh(job, body.mesh, member, source.file, output);
+    const Json& figures = job.summary["predicted"];
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();
     peak = std::max(peak, figures["peak_bytes"].get<double>());
     seconds += share * (figures["seconds"].get<double>() - std::min(on_clock, of_processor));
     processor += share * (figures["processor_seconds"].get<double>() - of_processor);
   }
-  program.summary["predicted"] = {{"triangles", triangles},
-                                  {"file_bytes", file_bytes},
-                                  {"peak_bytes", peak},
-                                  {"seconds", seconds},
-                                  {"processor_seconds", processor},
-                                  {"members", members},
-                                  {"sampled_members", numbers},
-                                  {"own_seconds", program.seconds() - start}};
-  if (program.quiet) return;
-  program.print_result(
+  job.summary["predicted"] = {{"triangles", triangles},
+                              {"file_bytes", file_bytes},
+                              {"peak_bytes", peak},
+                              {"seconds", seconds},
+                              {"processor_seconds", processor},
+                              {"members", members},
+                              {"sampled_members", numbers},
+                              {"own_seconds", job.seconds() - start}};
+  if (job.quiet) return;
+  job.print_result(
       fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them\n", members,
                   rounded_count(triangles), byte_words(file_bytes), byte_words(peak),
                   seconds_words(seconds, processor), numbers.size()));

@@ -1,4 +1,4 @@
-#include "apps/synth/npz_file.h"
+#include "tasks/synth/npz_file.h"
 
 #include <zip.h>
 

@@ -1,4 +1,4 @@
-#include "apps/synth/synth_reports.h"
+#include "tasks/synth/synth_mesh_internal.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const Impl
 
 }  // namespace
 
-void report_layers_left_out(Program& program, const ImplicitField& field, const Recipe& recipe,
+void report_layers_left_out(Job& job, const ImplicitField& field, const Recipe& recipe,
                             const std::filesystem::path& file, bool is_patch) {
   auto list = nlohmann::ordered_json::array();
   std::map<std::string, std::string> words;  // by reason
@@ -67,35 +67,33 @@ void report_layers_left_out(Program& program, const ImplicitField& field, const 
     named += (named.empty() ? "" : ", ") + in_words(left, recipe);
   }
   for (const auto& [reason, named] : words) {
-    program.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, named,
-                            is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
+    job.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, named,
+                        is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
   }
-  program.summary["layers_left_out"] = std::move(list);
+  job.summary["layers_left_out"] = std::move(list);
 }
 
-void report_erosion(Program& program, const Erosion& erosion, const ErosionStatistics& done,
-                    std::size_t vertices) {
-  program.summary["erosion"] = {{"settled", done.settled},
-                                {"sweeps", done.sweeps},
-                                {"steepest_before", done.steepest_before},
-                                {"steepest_after", done.steepest_after},
-                                {"talus_angle", erosion.talus_angle},
-                                {"moved_vertices", done.moved_vertices},
-                                {"rock_vertices", done.rock_vertices},
-                                {"volume_moved", done.volume_moved}};
+void report_erosion(Job& job, const Erosion& erosion, const ErosionStatistics& done, std::size_t vertices) {
+  job.summary["erosion"] = {{"settled", done.settled},
+                            {"sweeps", done.sweeps},
+                            {"steepest_before", done.steepest_before},
+                            {"steepest_after", done.steepest_after},
+                            {"talus_angle", erosion.talus_angle},
+                            {"moved_vertices", done.moved_vertices},
+                            {"rock_vertices", done.rock_vertices},
+                            {"volume_moved", done.volume_moved}};
   const std::string words = fmt::format(
       "erosion: {} of {} vertices moved, {} are rock; the steepest loose slope is {:.2f} degrees, before "
       "{:.2f}",
       done.moved_vertices, vertices, done.rock_vertices, done.steepest_after, done.steepest_before);
   const std::string remedy = done.sweeps < erosion.iterations ? "no slide lowers it; raise --resolution"
                                                               : "raise erosion.iterations";
-  program.say(words + (done.settled
-                           ? fmt::format("; settled below {:g}", erosion.talus_angle)
-                           : fmt::format("; not settled below {:g}: {}", erosion.talus_angle, remedy)));
+  job.say(words + (done.settled ? fmt::format("; settled below {:g}", erosion.talus_angle)
+                                : fmt::format("; not settled below {:g}: {}", erosion.talus_angle, remedy)));
 }
 
-void report_even(Program& program, const EvenStatistics& done, const std::string& unit) {
-  program.summary["even"] = {
+void report_even(Job& job, const EvenStatistics& done, const std::string& unit) {
+  job.summary["even"] = {
       {"quality_before", {{"first_percentile", done.before.first_percentile}, {"mean", done.before.mean}}},
       {"quality_after", {{"first_percentile", done.after.first_percentile}, {"mean", done.after.mean}}},
       {"mean_move", done.mean_move},
@@ -103,7 +101,7 @@ void report_even(Program& program, const EvenStatistics& done, const std::string
       {"largest_value", done.largest_value},
       {"moved_vertices", done.moved},
       {"kept_vertices", done.kept}};
-  program.say(fmt::format(
+  job.say(fmt::format(
       "even: quality {:.2f} at the first percentile, before {:.2f}, and {:.2f} in the mean, before "
       "{:.2f}; {} vertices moved along the surface, by {:.3g} {} in the mean and {:.3g} at most, "
       "{} stay; |F| <= {:.2g}",

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/program.h"
-#include "apps/synth/synth_mesh.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "geometry/mesh_sink.h"
@@ -20,6 +18,8 @@
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "synthesis/mesh/tile_border.h"
+#include "tasks/job/job.h"
+#include "tasks/synth/synth_mesh.h"
 #include "tasks/synthesis/mesh_region.h"
 #include "tasks/synthesis/tile_certificate.h"
 
@@ -140,15 +140,15 @@ class TileRecord {
   }
 
   // Adds the certificate to a summary that has the hash of the mesh.
-  void add_to_summary(Program& program, const Recipe& recipe, const std::filesystem::path& output) const {
-    program.summary["tile"] = to_json(TileCertificate{.number = tile_.index + 1,
-                                                      .count = tile_.count,
-                                                      .recipe_sha256 = hash_of_recipe(recipe),
-                                                      .resolution = resolution_,
-                                                      .length_unit = recipe.length_unit,
-                                                      .file = output.filename().string(),
-                                                      .file_sha256 = program.summary["sha256"],
-                                                      .figures = figures_});
+  void add_to_summary(Job& job, const Recipe& recipe, const std::filesystem::path& output) const {
+    job.summary["tile"] = to_json(TileCertificate{.number = tile_.index + 1,
+                                                  .count = tile_.count,
+                                                  .recipe_sha256 = hash_of_recipe(recipe),
+                                                  .resolution = resolution_,
+                                                  .length_unit = recipe.length_unit,
+                                                  .file = output.filename().string(),
+                                                  .file_sha256 = job.summary["sha256"],
+                                                  .figures = figures_});
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "apps/synth/synth_height_map.h"
+#include "tasks/synth/synth_mesh_internal.h"
 
 #include <cmath>
 
@@ -59,7 +59,7 @@ void check_height_map(const std::filesystem::path& file, const Region& region, c
   require_writable(frame_file(file));
 }
 
-void write_height_map(Program& program, const std::filesystem::path& file, const TriangleMesh& mesh,
+void write_height_map(Job& job, const std::filesystem::path& file, const TriangleMesh& mesh,
                       const Region& region, const Recipe& recipe, int resolution) {
   const double metres = metres_of(recipe.length_unit);
   const HeightMap map = region.axes ? height_map(mesh, *region.axes, region.size, resolution, metres)
@@ -68,7 +68,7 @@ void write_height_map(Program& program, const std::filesystem::path& file, const
   write_geotiff(map.heights, map.side, map.side, metres * map.pixel,
                 frame.dump(-1, ' ', true, Json::error_handler_t::replace), file);
   write_file(frame_file(file), frame.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  program.summary["height_map"] = frame;
+  job.summary["height_map"] = frame;
 }
 
 }  // namespace astrolith

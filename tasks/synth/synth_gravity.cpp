@@ -1,4 +1,4 @@
-#include "apps/synth/synth_gravity.h"
+#include "tasks/synth/synth_mesh_internal.h"
 
 #include <numbers>
 
@@ -25,23 +25,22 @@ void check_gravity(const GravityRequest& request, const Recipe& recipe) {
     throw InputError("--gravity: a recipe in px has no size; state m or km in it");
 }
 
-std::vector<VertexValues> vertex_gravity(Program& program, const GravityRequest& request,
-                                         const Recipe& recipe, const TriangleMesh& mesh) {
+std::vector<VertexValues> vertex_gravity(Job& job, const GravityRequest& request, const Recipe& recipe,
+                                         const TriangleMesh& mesh) {
   const double density = request.density_and_period[0], period = request.density_and_period[1];
   const double metres = metres_of(recipe.length_unit);
   const GravityPlaces places = vertex_places(mesh);
-  const PolyhedronGravity gravity(mesh, {}, program.progress("tree"));
-  const std::vector<Attraction> attractions =
-      gravity.at(places.points, kTolerance, program.progress("gravity"));
+  const PolyhedronGravity gravity(mesh, {}, job.progress("tree"));
+  const std::vector<Attraction> attractions = gravity.at(places.points, kTolerance, job.progress("gravity"));
   const Rotation rotation{metres * body_mass(mesh).center,
                           {0, 0, 1},
                           period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * period) : 0.0};
   const std::vector<PointGravity> values =
       point_gravity(in_metres(places.points, metres), attractions, density, metres, rotation);
   const SurfaceMeans means = surface_means(values, places.areas);
-  program.summary["gravity"] = surface_json(places, values, means);
-  program.summary["gravity"]["achieved_error"] = error_json(
-      achieved_error(gravity, places.points, attractions, kSample, program.seed, program.progress("check")),
+  job.summary["gravity"] = surface_json(places, values, means);
+  job.summary["gravity"]["achieved_error"] = error_json(
+      achieved_error(gravity, places.points, attractions, kSample, job.seed, job.progress("check")),
       kTolerance);
   std::vector<VertexValues> quantities;
   const std::vector<GravityColumn> columns = gravity_columns(places, values, means);

@@ -1,4 +1,4 @@
-#include "apps/synth/synth_size.h"
+#include "tasks/synth/synth_mesh_internal.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
+#include "numerics/parallel_for.h"
+#include "numerics/processor_clock.h"
 #include "synthesis/mesh/sample_grid.h"
 #include "tasks/job/words.h"
 
@@ -18,18 +20,18 @@ constexpr int kWorthPredicting = 256;
 
 }  // namespace
 
-void declare_size_options(Program& program, MeshSizeRequest& request) {
-  Option resolution = program.app
+void declare_size_options(Job& job, MeshSizeRequest& request) {
+  Option resolution = job.options
                           .add_option("--resolution", request.resolution,
                                       "cells along the body's longest side, border included")
                           .check(in_range(kMinResolution, kMaxResolution));
-  program.app
+  job.options
       .add_option("--triangles", request.triangles,
                   "choose the resolution that gives this many triangles, to about a twentieth, such as 1e6")
       .check(in_range(100.0, 1e10))
       .excludes(resolution)
       .default_text("");
-  program.app
+  job.options
       .add_option(
           "--max-memory", request.max_memory_gb,
           "stay below this many gigabytes of memory: a mesh that is predicted to need more is refused, one "
@@ -37,7 +39,7 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
           "quarters of the machine's memory are refused")
       .check(above_zero())
       .default_text("");
-  program.app.add_flag(
+  job.options.add_flag(
       "--predict", request.only_predict,
       "only say how many triangles, bytes (of .ply.zst before it is compressed), how much "
       "memory and how many "
@@ -52,36 +54,35 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
       "of them");
 }
 
-int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh) {
+int choose_resolution(Job& job, const MeshSizeRequest& request, const PlannedMesh& mesh) {
   const bool small = request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting;
   if (request.triangles <= 0.0 && !request.only_predict && small) return request.resolution;
 
   const MeshPrediction predicted =
       predict_mesh(mesh, request.resolution, request.triangles,
-                   {program.threads, program.seconds(), program.processor_seconds(), !request.only_predict});
+                   {thread_limit(), job.seconds(), processor_seconds(), !request.only_predict});
   const int resolution = predicted.resolution;
-  program.summary["resolution"] = resolution;
-  program.summary["predicted"] = {{"triangles", predicted.triangles},
-                                  {"file_bytes", predicted.file_bytes},
-                                  {"peak_bytes", predicted.peak_bytes},
-                                  {"seconds", predicted.seconds},
-                                  {"processor_seconds", predicted.processor_seconds},
-                                  {"own_seconds", predicted.own_seconds},
-                                  {"own_evaluations", predicted.own_evaluations}};
+  job.summary["resolution"] = resolution;
+  job.summary["predicted"] = {{"triangles", predicted.triangles},
+                              {"file_bytes", predicted.file_bytes},
+                              {"peak_bytes", predicted.peak_bytes},
+                              {"seconds", predicted.seconds},
+                              {"processor_seconds", predicted.processor_seconds},
+                              {"own_seconds", predicted.own_seconds},
+                              {"own_evaluations", predicted.own_evaluations}};
   require_memory(mesh, predicted, memory_limit(request.max_memory_gb));
   const std::string line = fmt::format("resolution {}: about {} triangles, {} file, {} memory, {}",
                                        resolution, rounded_count(predicted.triangles),
                                        byte_words(predicted.file_bytes), byte_words(predicted.peak_bytes),
                                        seconds_words(predicted.seconds, predicted.processor_seconds));
-  if (!request.only_predict) program.say(line);
-  if (request.only_predict && !program.quiet) program.print_result(line + "\n");
+  if (!request.only_predict) job.say(line);
+  if (request.only_predict && !job.quiet) job.print_result(line + "\n");
   return resolution;
 }
 
-void fail_memory(const Program& program, const MeshSizeRequest& request,
-                 const std::filesystem::path& output) {
+void fail_memory(const Job& job, const MeshSizeRequest& request, const std::filesystem::path& output) {
   const double limit = memory_limit(request.max_memory_gb) / 1e9;
-  const double predicted = program.summary["predicted"]["peak_bytes"].get<double>() / 1e9;
+  const double predicted = job.summary["predicted"]["peak_bytes"].get<double>() / 1e9;
   throw InputError(fmt::format(
       "{}: the mesh needs more than the {:.3g} GB of --max-memory, and more than the {:.3g} GB that "
       "were predicted; lower the resolution, or raise --max-memory to {:.3g}",

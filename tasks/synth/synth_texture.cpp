@@ -1,4 +1,4 @@
-#include "apps/synth/synth_texture.h"
+#include "tasks/synth/synth_texture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,32 +54,31 @@ void write_picture(const Picture& p, int bits, const fs::path& output) {
   write_png16_grey(words, width, height, output);
 }
 
-void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe,
-                   const PlaneTexture& texture, const PixelSize& size, const fs::path& output) {
+void write_heights(Job& job, const TextureRequest& request, const Recipe& recipe, const PlaneTexture& texture,
+                   const PixelSize& size, const fs::path& output) {
   const double rms = texture.height_rms;
   write_picture({size, 1, texture.values, 0.5, 0.5 / (kTextureRange * rms)}, request.bits, output);
-  program.summary["content"] = "height";
-  program.summary["height_unit"] = texture.has_height ? recipe.length_unit : "standard deviations";
-  program.summary["height_rms"] = rms;
+  job.summary["content"] = "height";
+  job.summary["height_unit"] = texture.has_height ? recipe.length_unit : "standard deviations";
+  job.summary["height_rms"] = rms;
   if (output.extension() == ".png") {
-    program.summary["height_at_0"] = -kTextureRange * rms;
-    program.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] = kTextureRange * rms;
+    job.summary["height_at_0"] = -kTextureRange * rms;
+    job.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] = kTextureRange * rms;
   }
-  program.say(output.string() + ": height of a texture layer, " + request.size + " pixels");
+  job.say(output.string() + ": height of a texture layer, " + request.size + " pixels");
 }
 
-void write_colors(Program& program, const TextureRequest& request, const PlaneTexture& texture,
-                  const PixelSize& size, const fs::path& output) {
+void write_colors(Job& job, const TextureRequest& request, const PlaneTexture& texture, const PixelSize& size,
+                  const fs::path& output) {
   const std::vector<float>& rgb = texture.values;
   write_picture({size, 3, rgb, 0.0, 1.0}, request.bits, output);
   const auto outside = std::count_if(rgb.begin(), rgb.end(), [](float v) { return v < 0.0f || v > 1.0f; });
-  program.summary["content"] = "color";
-  program.summary["layers"] = texture.layers;
-  program.summary["share_outside_full_scale"] =
-      static_cast<double>(outside) / static_cast<double>(rgb.size());
-  program.say(output.string() + ": colours of " +
-              counted(static_cast<std::size_t>(texture.layers), "texture layer") + ", " + request.size +
-              " pixels");
+  job.summary["content"] = "color";
+  job.summary["layers"] = texture.layers;
+  job.summary["share_outside_full_scale"] = static_cast<double>(outside) / static_cast<double>(rgb.size());
+  job.say(output.string() + ": colours of " +
+          counted(static_cast<std::size_t>(texture.layers), "texture layer") + ", " + request.size +
+          " pixels");
 }
 
 // "rock.png" and "normal" give "rock_normal" with the extension.
@@ -97,36 +96,36 @@ struct MaterialFiles {
   fs::path height, color, normal, occlusion;
 };
 
-void summarize_material(Program& program, const Recipe& recipe, const PlaneMaterial& material,
+void summarize_material(Job& job, const Recipe& recipe, const PlaneMaterial& material,
                         const MaterialFiles& files) {
   const auto [low, high] = std::minmax_element(material.height.values.begin(), material.height.values.end());
-  program.summary["content"] = "material";
-  program.summary["height_unit"] = recipe.length_unit;
-  program.summary["pixel_size"] = material.pixel_size;
-  program.summary["height_rms"] = material.height.height_rms;
-  program.summary["least_height"] = *low;
-  program.summary["greatest_height"] = *high;
-  program.summary["normal_convention"] = "OpenGL";
-  program.summary["occlusion_reach"] = kOcclusionReach;
-  program.summary["files"]["height"] = files.height.string();
-  if (material.color) program.summary["files"]["color"] = files.color.string();
-  program.summary["files"]["normal"] = files.normal.string();
-  program.summary["files"]["occlusion"] = files.occlusion.string();
+  job.summary["content"] = "material";
+  job.summary["height_unit"] = recipe.length_unit;
+  job.summary["pixel_size"] = material.pixel_size;
+  job.summary["height_rms"] = material.height.height_rms;
+  job.summary["least_height"] = *low;
+  job.summary["greatest_height"] = *high;
+  job.summary["normal_convention"] = "OpenGL";
+  job.summary["occlusion_reach"] = kOcclusionReach;
+  job.summary["files"]["height"] = files.height.string();
+  if (material.color) job.summary["files"]["color"] = files.color.string();
+  job.summary["files"]["normal"] = files.normal.string();
+  job.summary["files"]["occlusion"] = files.occlusion.string();
 }
 
-void write_material(Program& program, const TextureRequest& request, const Recipe& recipe,
-                    const fs::path& file, const fs::path& output, const PixelSize& size) {
+void write_material(Job& job, const TextureRequest& request, const Recipe& recipe, const fs::path& file,
+                    const fs::path& output, const PixelSize& size) {
   const MaterialFiles files(output);
   const PlaneMaterial material = draw_material(
-      recipe, file.string(), {size.width, size.height, "", request.tileable}, program.progress("texture"));
+      recipe, file.string(), {size.width, size.height, "", request.tileable}, job.progress("texture"));
   write_tiff_float(material.height.values, size.width, size.height, files.height);
   if (material.color) write_picture({size, 3, material.color->values, 0.0, 1.0}, request.bits, files.color);
   write_picture({size, 3, material.normal, 0.5, 0.5}, request.bits, files.normal);
   write_picture({size, 1, material.occlusion, 0.0, 1.0}, request.bits, files.occlusion);
-  summarize_material(program, recipe, material, files);
-  program.say(files.height.string() + ": height in " + recipe.length_unit +
-              (material.color ? "; with it colour, normals" : "; with it normals (no layer has a color)") +
-              " and occlusion as .png, " + request.size + " pixels");
+  summarize_material(job, recipe, material, files);
+  job.say(files.height.string() + ": height in " + recipe.length_unit +
+          (material.color ? "; with it colour, normals" : "; with it normals (no layer has a color)") +
+          " and occlusion as .png, " + request.size + " pixels");
 }
 
 }  // namespace
@@ -137,8 +136,8 @@ std::vector<fs::path> texture_files(const TextureRequest& request, const fs::pat
   return {files.height, files.color, files.normal, files.occlusion};
 }
 
-void declare_texture_options(Program& program, TextureRequest& request) {
-  OptionTable& app = program.app;
+void declare_texture_options(Job& job, TextureRequest& request) {
+  OptionTable& app = job.options;
   app.add_option("--texture", request.size,
                  "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
                  "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "
@@ -158,18 +157,18 @@ void declare_texture_options(Program& program, TextureRequest& request) {
       .needs(app.option("--texture"));
 }
 
-void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
-                   const fs::path& file, const fs::path& output) {
+void write_texture(Job& job, const TextureRequest& request, const Recipe& recipe, const fs::path& file,
+                   const fs::path& output) {
   const PixelSize size = parse_pixel_size("--texture", request.size, 1, kMaxTextureSide);
-  program.summary["width"] = size.width;
-  program.summary["height"] = size.height;
-  program.summary["tileable"] = request.tileable;
-  if (request.content == "material") return write_material(program, request, recipe, file, output, size);
+  job.summary["width"] = size.width;
+  job.summary["height"] = size.height;
+  job.summary["tileable"] = request.tileable;
+  if (request.content == "material") return write_material(job, request, recipe, file, output, size);
   const PlaneTexture texture =
       draw_texture(recipe, file.string(), {size.width, size.height, request.content, request.tileable},
-                   program.progress("texture"));
-  if (texture.channels == 3) return write_colors(program, request, texture, size, output);
-  write_heights(program, request, recipe, texture, size, output);
+                   job.progress("texture"));
+  if (texture.channels == 3) return write_colors(job, request, texture, size, output);
+  write_heights(job, request, recipe, texture, size, output);
 }
 
 }  // namespace astrolith

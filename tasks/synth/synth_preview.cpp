@@ -1,11 +1,10 @@
-#include "apps/synth/synth_preview.h"
+#include "tasks/synth/synth_preview.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "apps/synth/npz_file.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
@@ -16,6 +15,7 @@
 #include "synthesis/picture/picture_maps.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/pixel_size.h"
+#include "tasks/synth/npz_file.h"
 
 namespace astrolith {
 namespace {
@@ -31,18 +31,18 @@ PixelSize size_of_maps(const std::string& text) {
 
 // Pictures of members are smaller unless a size is given: many are made, of meshes of few triangles. Pictures
 // for training show the body alone, and their pixels are those of their maps.
-PreviewOptions picture_options(const Program& program, const PreviewRequest& request,
-                               const TriangleMesh& mesh, const std::string& unit) {
-  PreviewOptions options = request.look.options(program, mesh, unit);
-  const bool of_member = program.app.option("--members").count() > 0;
+PreviewOptions picture_options(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
+                               const std::string& unit) {
+  PreviewOptions options = request.look.options(job, mesh, unit);
+  const bool of_member = job.options.option("--members").count() > 0;
   if (of_member && request.look.size.empty()) options.width = 640, options.height = 480;
   if (of_member || !request.maps.empty()) options.marks = {};
   return options;
 }
 
 // The cameras of the request with the size of its maps.
-PreviewOptions maps_options(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
-  PreviewOptions options = picture_options(program, request, mesh, "");
+PreviewOptions maps_options(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh) {
+  PreviewOptions options = picture_options(job, request, mesh, "");
   options.marks = {};
   if (request.maps_size.empty()) return options;
   const PixelSize size = size_of_maps(request.maps_size);
@@ -111,29 +111,29 @@ std::vector<double> flat(const std::vector<Vec3d>& vectors) {
 
 }  // namespace
 
-void declare_preview_options(Program& program, PreviewRequest& request) {
-  program.app
+void declare_preview_options(Job& job, PreviewRequest& request) {
+  job.options
       .add_option("--preview", request.file,
                   "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
                   "patch from above its ground and obliquely")
       .placeholder("FILE.png")
       .writes();
-  request.look.add_to(program.app);
-  program.app.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
-  program.app
+  request.look.add_to(job.options);
+  job.options.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
+  job.options
       .add_option("--preview-maps", request.maps,
                   "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
                   "instance, the row of the --feature-list; with the cameras")
       .placeholder("FILE.npz")
       .writes();
-  program.app.add_option("--maps-size", request.maps_size, "pixels of the maps")
+  job.options.add_option("--maps-size", request.maps_size, "pixels of the maps")
       .placeholder("WxH (default that of the picture)")
       .default_text("");
 }
 
-void check_preview(const Program& program, const PreviewRequest& request) {
+void check_preview(const Job& job, const PreviewRequest& request) {
   const bool has_picture = !request.file.empty(), has_maps = !request.maps.empty();
-  request.look.check(program, has_picture, "add --preview FILE.png");
+  request.look.check(job, has_picture, "add --preview FILE.png");
   if (has_maps && !has_picture) {
     throw InputError("--preview-maps: is about a picture; add --preview FILE.png");
   }
@@ -151,8 +151,7 @@ void check_preview(const Program& program, const PreviewRequest& request) {
   }
 }
 
-void require_cameras_outside(const Program& program, const PreviewRequest& request,
-                             const ImplicitField& field) {
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const ImplicitField& field) {
   if (request.file.empty() || !request.look.has_pinholes()) return;
   constexpr int kCells = 32;  // along the longest side of the body
   MeshStatistics made;
@@ -160,27 +159,26 @@ void require_cameras_outside(const Program& program, const PreviewRequest& reque
   if (coarse.triangles.empty()) return;
   // Cameras that stand by the body's box are known to about a cell.
   const double deep = 2.0 * made.step;
-  for (const Vec3d& place : pinhole_places(coarse, picture_options(program, request, coarse, ""))) {
+  for (const Vec3d& place : pinhole_places(coarse, picture_options(job, request, coarse, ""))) {
     if (field.value(place) > deep) fail_inside();
   }
 }
 
-void require_cameras_outside(const Program& program, const PreviewRequest& request,
-                             const TriangleMesh& mesh) {
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh) {
   if (request.file.empty() || !request.look.has_pinholes()) return;
-  require_cameras_outside(mesh, picture_options(program, request, mesh, ""));
+  require_cameras_outside(mesh, picture_options(job, request, mesh, ""));
 }
 
-void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+void write_preview(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit) {
-  PreviewOptions options = picture_options(program, request, mesh, unit);
+  PreviewOptions options = picture_options(job, request, mesh, unit);
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
-  request.look.write(program, render_picture(mesh, options, program.progress("preview")), request.file);
+  request.look.write(job, render_picture(mesh, options, job.progress("preview")), request.file);
 }
 
-void write_preview_maps(Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                         const MapsSource& source) {
-  const PictureMaps maps = render_maps(mesh, maps_options(program, request, mesh), program.progress("maps"));
+  const PictureMaps maps = render_maps(mesh, maps_options(job, request, mesh), job.progress("maps"));
   const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
   const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
                             corner = flat(maps.corner), eye = flat(maps.eye), pixel{maps.pixel};
@@ -189,10 +187,10 @@ void write_preview_maps(Program& program, const PreviewRequest& request, const T
                                npz_array("view", {h, w}, maps.view)};
   LayerMaps layers;
   if (source.recipe.erosion) {
-    program.say("note: erosion moves what layers made: " + request.maps.string() +
-                " has depth and normal, but neither layer nor instance");
+    job.say("note: erosion moves what layers made: " + request.maps.string() +
+            " has depth and normal, but neither layer nor instance");
   } else {
-    layers = label_pixels(maps, source, program.progress("labels"));
+    layers = label_pixels(maps, source, job.progress("labels"));
     arrays.push_back(npz_array("layer", {h, w}, layers.layer));
     arrays.push_back(npz_array("instance", {h, w}, layers.instance));
   }

@@ -5,14 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
-#include "apps/synth/synth_gravity.h"
-#include "apps/synth/synth_preview.h"
-#include "apps/synth/synth_size.h"
 #include "recipe/recipe.h"
+#include "tasks/job/job.h"
+#include "tasks/synth/synth_preview.h"
 #include "tasks/synthesis/device_option.h"
 
 namespace astrolith {
+
+struct MeshSizeRequest {
+  int resolution = 256;
+  double triangles = 0.0;      // 0 = as the resolution gives
+  double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
+  bool only_predict = false;
+};
+
+struct GravityRequest {
+  std::vector<double> density_and_period;  // kg/m3 and hours, 0 hours = at rest; empty = no gravity
+
+  bool wanted() const { return !density_and_period.empty(); }
+};
 
 struct MeshRequest {
   MeshSizeRequest size;
@@ -31,7 +42,7 @@ struct MeshRequest {
   DeviceOption device;
 };
 
-void declare_mesh_options(Program& program, MeshRequest& request);
+void declare_mesh_options(Job& job, MeshRequest& request);
 
 // Throws InputError for options that contradict each other or the recipe, which was read from `file`.
 void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file);
@@ -41,15 +52,14 @@ void check_mesh_name(const MeshRequest& request, const std::filesystem::path& ou
 
 // Throws InputError for an output of the request that cannot be written. An output without a name is left
 // out.
-void check_mesh_outputs(const Program& program, const MeshRequest& request,
-                        const std::filesystem::path& output);
+void check_mesh_outputs(const Job& job, const MeshRequest& request, const std::filesystem::path& output);
 
 // Writes the mesh of a recipe with a body, which was read from `file`, and its summary. Throws InputError
 // where the request makes no sense, WorkError for a mesh that does not keep its promise.
-void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe,
-               const std::filesystem::path& file, const std::filesystem::path& output);
+void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file,
+               const std::filesystem::path& output);
 
 // The peak of memory and the hash of the output.
-void summarize_output(Program& program, const std::filesystem::path& output);
+void summarize_output(Job& job, const std::filesystem::path& output);
 
 }  // namespace astrolith

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
 #include "recipe/recipe.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
@@ -21,11 +21,11 @@ struct TextureRequest {
 std::vector<std::filesystem::path> texture_files(const TextureRequest& request,
                                                  const std::filesystem::path& output);
 
-void declare_texture_options(Program& program, TextureRequest& request);
+void declare_texture_options(Job& job, TextureRequest& request);
 
 // Writes the texture that was asked for, .png or .tif, and its summary. Throws InputError where the request
 // makes no sense or the recipe, read from `file`, holds no such layer.
-void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
+void write_texture(Job& job, const TextureRequest& request, const Recipe& recipe,
                    const std::filesystem::path& file, const std::filesystem::path& output);
 
 }  // namespace astrolith

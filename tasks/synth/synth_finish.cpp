@@ -1,4 +1,4 @@
-#include "apps/synth/synth_finish.h"
+#include "tasks/synth/synth_finish.h"
 
 #include <fmt/format.h>
 
@@ -45,9 +45,9 @@ void require_room(const FinishLayer& layer, double patch_side) {
 
 }  // namespace
 
-void declare_finish_options(Program& program, FinishOptions& options) {
+void declare_finish_options(Job& job, FinishOptions& options) {
   Option finish =
-      program.app
+      job.options
           .add_option(
               "--finish", options.body,
               "continue craters and boulders below the recipe's finest size as counts of a known body "
@@ -56,12 +56,12 @@ void declare_finish_options(Program& program, FinishOptions& options) {
           .check(one_of({"itokawa", "bennu", "eros", "ryugu", "dimorphos", "none"}))
           .placeholder("BODY")
           .default_text("none");
-  program.app.add_option("--to", options.to, "with --finish: the least size, in the recipe's unit")
+  job.options.add_option("--to", options.to, "with --finish: the least size, in the recipe's unit")
       .check(in_range(1e-6, 1e6))
       .needs(finish)
       .default_text("")
       .placeholder("SIZE");
-  program.app
+  job.options
       .add_option(
           "--from", options.from,
           "with --finish: the greatest size; the smallest crater or boulder of the recipe, or else the "
@@ -78,7 +78,7 @@ void check_finish(const FinishOptions& options) {
   }
 }
 
-Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe, const std::string& file,
+Recipe finished(Job& job, const FinishOptions& options, const Recipe& recipe, const std::string& file,
                 double patch_side) {
   if (!options.wanted()) return recipe;
   Finish finish = finish_recipe(
@@ -88,12 +88,12 @@ Recipe finished(Program& program, const FinishOptions& options, const Recipe& re
   auto layers = nlohmann::ordered_json::array();
   for (const FinishLayer& layer : finish.layers) {
     layers.push_back(json_of(layer));
-    program.say(fmt::format("finish {}: {}", options.body, words_of(layer, recipe.length_unit)));
+    job.say(fmt::format("finish {}: {}", options.body, words_of(layer, recipe.length_unit)));
   }
   if (!finish.without_craters.empty()) {
-    program.say(fmt::format("finish {}: no craters, since {}", options.body, finish.without_craters));
+    job.say(fmt::format("finish {}: no craters, since {}", options.body, finish.without_craters));
   }
-  program.summary["finish"] = {
+  job.summary["finish"] = {
       {"body", options.body}, {"from", finish.from}, {"to", finish.to}, {"layers", std::move(layers)}};
   return std::move(finish.recipe);
 }

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "apps/synth/synth_mesh.h"
 #include "synthesis/finish/family_member.h"
+#include "tasks/synth/synth_mesh.h"
 
 namespace astrolith {
 
@@ -32,7 +32,7 @@ struct MemberSource {
   std::function<FamilyMember(std::uint64_t number)> draw;
 };
 
-void declare_members_options(Program& program, MembersRequest& request);
+void declare_members_options(Job& job, MembersRequest& request);
 
 // Throws InputError for a range without members and for a name that would be the same for all members;
 // without a range for a name that has the mark of members.
@@ -40,13 +40,13 @@ void check_members(const MembersRequest& request, BodyRequest body);
 
 // Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
 // the others go on. Throws InputError where no member can be made.
-void make_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+void make_members(Job& job, const MembersRequest& request, const BodyRequest& body,
                   const MemberSource& source);
 
 // States triangles, bytes of meshes and recipes, memory and seconds of the whole range in the summary and on
 // stdout, from a few of its members. Without a name for meshes, .ply is assumed, unless recipes alone are
 // asked for.
-void predict_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
                      const MemberSource& source);
 
 }  // namespace astrolith

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/program.h"
 #include "geometry/triangle_mesh.h"
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/picture/preview.h"
+#include "tasks/job/job.h"
 #include "tasks/synthesis/mesh_region.h"
 #include "tasks/synthesis/picture_options.h"
 
@@ -21,20 +21,19 @@ struct PreviewRequest {
   PictureOptions look;
 };
 
-void declare_preview_options(Program& program, PreviewRequest& request);
+void declare_preview_options(Job& job, PreviewRequest& request);
 
 // Throws InputError when the picture or its maps cannot be written, or when an option about the picture is
 // given without --preview.
-void check_preview(const Program& program, const PreviewRequest& request);
+void check_preview(const Job& job, const PreviewRequest& request);
 
 // Throws InputError for a pinhole deep inside the body of the field, whose mesh need not exist yet.
-void require_cameras_outside(const Program& program, const PreviewRequest& request,
-                             const ImplicitField& field);
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const ImplicitField& field);
 // Throws InputError for a pinhole inside the mesh.
-void require_cameras_outside(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh);
 
 // Lengths of the mesh are in `unit`. Pictures of members and pictures with maps have no marks.
-void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+void write_preview(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit);
 
 // Where the surface of a mesh comes from.
@@ -52,7 +51,7 @@ struct MapsSource {
 //   layer (h, w) int32       the label of synthesis/field/surface_labels.h; -1 where the ray meets nothing
 //   instance (h, w) int32    the row of the feature list, from 0; -1 for none
 // An eroded mesh has no layer and no instance, because erosion moves what layers made; a line says so.
-void write_preview_maps(Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                         const MapsSource& source);
 
 }  // namespace astrolith
