@@ -1,13 +1,15 @@
-// fit_gabor, run as a user runs it.
+// fit_gabor: a photo becomes a layer of a recipe.
+#include "tasks/estimation/fit_gabor.h"
+
 #include <sys/stat.h>
 
 #include <cmath>
 
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "tests/apps/inputs.h"
-#include "tests/apps/program_runner.h"
 #include "tests/support/data.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
@@ -15,9 +17,11 @@ namespace {
 using testing::has;
 
 // rock.png is smooth noise.
-class FitGabor : public testing::ProgramTest {
+class FitGabor : public testing::JobTest {
  protected:
-  FitGabor() : ProgramTest(ASTROLITH_FIT_GABOR) { write("rock.png", testing::noise_png(64)); }
+  FitGabor() : JobTest("fit_gabor", testing::job_of(declare_photo_fit, fit_gabor)) {
+    write("rock.png", testing::noise_png(64));
+  }
 
   std::string fit(const std::string& output, const std::string& more = "") {
     succeed("rock.png -o " + output + " " + more);
@@ -50,14 +54,6 @@ TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
   EXPECT_EQ(recipe().provenance.input_name, "rock.png");
   EXPECT_EQ(fit("rock.json", line + "2").size(), one.size());
   EXPECT_EQ(text("rock_exemplar.png"), image);
-}
-
-TEST_F(FitGabor, AnExemplarKeepsColours) {
-  fit("rock.json", "--model exemplar --channels pca --height-rms 0.5");
-  const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
-  EXPECT_TRUE(layer.color);
-  EXPECT_EQ(layer.height_rms, 0.5);
-  EXPECT_EQ(text("rock_exemplar.png")[25], '\2') << "colour type RGB";
 }
 
 TEST_F(FitGabor, WritesRandomPhasesAsAnExemplar) {
@@ -101,8 +97,12 @@ TEST_F(FitGabor, AutoSaysThatAPhotoChangesFromPlaceToPlace) {
   EXPECT_FALSE(has(succeed("rock.png -o rock.json --model auto"), crop));
 }
 
-TEST_F(FitGabor, AnExemplarHasItsReportToo) {
-  fit("rock.json", "--model exemplar --report report --spectrum s.npy");
+TEST_F(FitGabor, AnExemplarKeepsColoursAndHasItsReport) {
+  fit("rock.json", "--model exemplar --channels pca --height-rms 0.5 --report report --spectrum s.npy");
+  const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
+  EXPECT_TRUE(layer.color);
+  EXPECT_EQ(layer.height_rms, 0.5);
+  EXPECT_EQ(text("rock_exemplar.png")[25], '\2') << "colour type RGB";
   EXPECT_TRUE(exists("report/report.svg"));
   EXPECT_TRUE(has(text("report/index.html"), "The layer is the photo itself"));
   EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
@@ -112,13 +112,11 @@ TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
   write("flat.png", testing::png(64, 64, std::vector<std::uint8_t>(4096, 9)));
   write("small.png", testing::noise_png(16));
   write("out_exemplar.png", testing::noise_png(64));
-  for (const auto& [words, culprit] : {std::pair{"flat.png", "one grey value"},
-                                       {"small.png", "small.png"},
-                                       {"small.png --channels pca", "small.png"},
-                                       {"out_exemplar.png", "out_exemplar.png"}}) {
-    refuse(std::string("--model exemplar -o out.json ") + words, culprit);
-    refuse(std::string("--model phase -o out.json ") + words, culprit);
-  }
+  for (const std::string model : {"exemplar", "phase"})
+    refuse_all("-o out.json --model " + model + " ", {{"flat.png", "one grey value"},
+                                                      {"small.png", "small.png"},
+                                                      {"small.png --channels pca", "small.png"},
+                                                      {"out_exemplar.png", "out_exemplar.png"}});
 }
 
 TEST_F(FitGabor, SameBytesForAnyThreadCount) {
@@ -126,8 +124,7 @@ TEST_F(FitGabor, SameBytesForAnyThreadCount) {
 }
 
 TEST_F(FitGabor, SummaryHoldsTheFigures) {
-  fit("rock.json", "--summary s.json");
-  const auto summary = json("s.json");
+  const auto summary = figures("rock.png -o rock.json");
   for (const char* field :
        {"lobes", "pursuit_gap", "pursuit_reached", "refinement_reached", "spectrum_distance",
         "spectrum_residual", "weak_above", "weak", "band_overlap", "variance_in_spectrum",
@@ -151,12 +148,6 @@ TEST_F(FitGabor, AWeakFitIsCalledWeak) {
   const std::string said = succeed(photo.string() + " -o gravel.json --lobes 1");
   EXPECT_TRUE(has(said, "note: weak fit"));
   EXPECT_TRUE(has(said, "--lobes"));
-}
-
-TEST_F(FitGabor, NumbersMustBeFinite) {
-  for (const std::string option : {"--penalty", "--gap", "--height-rms", "--mm-per-px"}) {
-    refuse("rock.png -o out.json " + option + " nan", option);
-  }
 }
 
 // The size in the header decides, and the message states the memory that the fit would take.
@@ -187,20 +178,21 @@ TEST_F(FitGabor, EveryOutputIsWritten) {
 TEST_F(FitGabor, BadFilesAndOddOptionsAreRefused) {
   std::filesystem::create_directory(folder_ / "folder");
   ASSERT_EQ(::mkfifo((folder_ / "pipe.png").c_str(), 0600), 0);
-  for (const auto& [words, culprit] : {std::pair{"absent.png -o out.json", "absent.png"},
-                                       {"folder -o out.json", "folder"},
-                                       {"pipe.png -o out.json", "pipe.png"},
-                                       {"rock.png -o rock.png", "rock.png"},
-                                       {"rock.png -o absent/out.json", "out.json"},
-                                       {"rock.png -o folder", "folder"},
-                                       {"rock.png -o o.json --channels rgb", "--channels"},
-                                       {"rock.png -o o.json --detrend 7", "--detrend"},
-                                       {"rock.png -o o.json --detrend-by hope", "--detrend-by"},
-                                       {"rock.png -o o.json --lobes 0", "--lobes"},
-                                       {"rock.png -o o.json --model phase --lobes 5", "--lobes"},
-                                       {"rock.png -o o.json --max-memory 0.001", "rock.png"}}) {
-    refuse(words, culprit);
-  }
+  refuse_all("", {{"absent.png -o out.json", "absent.png"},
+                  {"folder -o out.json", "folder"},
+                  {"pipe.png -o out.json", "pipe.png"},
+                  {"rock.png -o absent/out.json", "out.json"},
+                  {"rock.png -o folder", "folder"}});
+  refuse_all("rock.png -o o.json ", {{"--channels rgb", "--channels"},
+                                     {"--detrend 7", "--detrend"},
+                                     {"--detrend-by hope", "--detrend-by"},
+                                     {"--lobes 0", "--lobes"},
+                                     {"--model phase --lobes 5", "--lobes"},
+                                     {"--penalty nan", "--penalty"},
+                                     {"--gap nan", "--gap"},
+                                     {"--height-rms nan", "--height-rms"},
+                                     {"--mm-per-px nan", "--mm-per-px"},
+                                     {"--max-memory 0.001", "rock.png"}});
 }
 
 }  // namespace

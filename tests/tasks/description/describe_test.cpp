@@ -1,18 +1,16 @@
-// describe, run as a user runs it.
-#include "tests/apps/inputs.h"
-#include "tests/apps/program_runner.h"
+// describe: histograms of shapes, and statistics of surfaces.
+#include "tasks/description/describe.h"
+
+#include <numeric>
+
 #include "tests/support/data.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
 
 using testing::has;
-
-double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum;
-}
 
 // Points of a sphere on a golden spiral with their normals, as ascii PLY.
 std::string sphere_points(int n, double normal_length = 1) {
@@ -29,9 +27,9 @@ std::string sphere_points(int n, double normal_length = 1) {
   return text;
 }
 
-class Describe : public testing::ProgramTest {
+class Describe : public testing::JobTest {
  protected:
-  Describe() : ProgramTest(ASTROLITH_DESCRIBE) {
+  Describe() : JobTest("describe", declare_describe) {
     write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
   }
   // Returns the messages.
@@ -63,7 +61,7 @@ TEST_F(Describe, WritesFrequenciesOneAxisAFeature) {
   EXPECT_EQ(describe("egg.obj"), closing_line_);
   const std::vector<double> ahd = array("5, 5, 5, 5, 5, 5");
   EXPECT_EQ(ahd.size(), 15625u);
-  EXPECT_NEAR(sum_of(ahd), 1, 1e-12);
+  EXPECT_NEAR(std::accumulate(ahd.begin(), ahd.end(), 0.0), 1, 1e-12);
   describe("egg.obj", "--features wahl");
   const std::vector<double> wahl = array("5, 5, 5, 5");
   for (std::size_t b = 0; b < wahl.size(); ++b) {
@@ -87,8 +85,7 @@ TEST_F(Describe, SameBytesForAnyThreadCount) {
 }
 
 TEST_F(Describe, SummaryHoldsTheFigures) {
-  describe("egg.obj", "--summary s.json");
-  const auto summary = json("s.json");
+  const auto summary = figures("egg.obj -o h.npy --points 600 --device cpu");
   EXPECT_EQ(summary["points"], 600);
   EXPECT_EQ(summary["pairs"], 600 * 599 / 2);
   EXPECT_NEAR(summary["max_distance"], 3, 0.05);
@@ -152,12 +149,12 @@ TEST_F(Describe, BadFilesAreRefused) {
   refuse_file("long_normals.ply", sphere_points(50, 2.0), "unit normals");
   refuse_file("flat.obj", testing::kFlatObj, "flat.obj: ");
   refuse_file("one.ply", sphere_points(1), "one.ply: ");
-  refuse("egg.obj -o egg.obj", "input itself");
   refuse("absent.obj -o out.npy", "absent.obj");
   refuse("egg.obj -o absent/o.npy", "o.npy");
-  for (const std::string option : {"--bins 1", "--bins 11", "--points 1", "--features all"}) {
-    refuse("egg.obj -o o.npy " + option, option.substr(0, option.find(' ')));
-  }
+  refuse_all("egg.obj -o o.npy ", {{"--bins 1", "--bins"},
+                                   {"--bins 11", "--bins"},
+                                   {"--points 1", "--points"},
+                                   {"--features all", "--features"}});
 }
 
 TEST_F(Describe, ARealBodyWithOpenPoles) {

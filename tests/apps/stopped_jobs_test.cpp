@@ -1,4 +1,4 @@
-// fit_shape after Ctrl-C: what it kept, what it says, and its status.
+// Programs after Ctrl-C: what they kept, what they say, and their status.
 #include <signal.h>
 
 #include <chrono>
@@ -7,12 +7,33 @@
 #include "recipe/recipe_json.h"
 #include "tests/apps/program_runner.h"
 #include "tests/support/data.h"
+#include "tests/tasks/inputs.h"
 
 namespace astrolith {
 namespace {
 
 using testing::has;
 using testing::ScratchFolder;
+
+// Ctrl-C after the program has begun its longest work.
+TEST(StoppedGravity, EndsWithinASecondAndLeavesNoFile) {
+  const ScratchFolder folder;
+  using Clock = std::chrono::steady_clock;
+  folder.write("fine.obj", testing::ellipsoid_obj(3, 2, 1, 101, 200));
+  folder.write("point.csv", "9 0 0\n");
+  const std::set<std::string> before = folder.files();
+  for (const std::string longest : {"--points point.csv --degree 50", "--exact"}) {
+    const std::string line = "fine.obj --density 2000 --sample 0 --quiet -o fine.csv " + longest;
+    const pid_t child = testing::start_program(ASTROLITH_GRAVITY, testing::words_of(line), folder.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << longest << " ended before it could be stopped";
+    const auto pressed = Clock::now();
+    ::kill(child, SIGINT);
+    EXPECT_EQ(testing::status_of(child), 1) << longest;
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - pressed).count(), 1.0) << longest;
+    EXPECT_EQ(folder.files(), before) << longest;
+  }
+}
 
 // Runs a fit that lasts longer than any wait of this test, and presses Ctrl-C after a while.
 testing::Outcome stopped_fit(const ScratchFolder& folder, const std::string& mesh,

@@ -1,10 +1,10 @@
-// synth --members, run as a user runs it.
+// synth --members.
 #include <sys/stat.h>
 
 #include <map>
 
 #include "numerics/files/sha256.h"
-#include "tests/apps/synth_runner.h"
+#include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
 namespace {
@@ -189,30 +189,28 @@ TEST_F(SynthMembers, AMemberThatFailsIsNamedAndTheOthersGoOn) {
 TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
   const std::string outputs = " -o {member}.ply --manifest m.jsonl";
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  for (const auto& [words, culprit] : std::vector<std::pair<std::string, std::string>>{
-           {"5:5" + outputs, "--members: 5:5 holds no member"},
-           {"7:5" + outputs, "--members: 7:5 holds no member"},
-           {"-1:5" + outputs, "--members: must be A:B"},
-           {"0:9007199254740993" + outputs, "--members: must be A:B"},
-           {"12" + outputs, "--members: must be A:B"},
-           {"0:2 -o body.ply --manifest m.jsonl", "--output: every member writes"},
-           {"0:2 --preview {member}.png --preview-maps a.npz" + outputs,
-            "--preview-maps: every member writes"},
-           {"0:2 -o {member}.ply --manifest \"\"", "--manifest: is given without a name"},
-           {"0:2 --manifest m.jsonl --out \"\"", "--out: is given without a name"},
-           {"0:2 --write-recipe {member}.astro --preview {member}.png --manifest m.jsonl",
-            "--write-recipe without -o keeps recipes alone"},
-           {"0:2 --predict -o {member}.obj --labels", ".ply"},
-           {"0:2 --predict -o {member}.foo", "{member}.foo"},
-           // Options that contradict each other are no failure of each member.
-           {"0:2 --labels --gravity 2000 8" + outputs, "--gravity: is of the whole mesh"},
-           {"0:2 --gravity -1 8" + outputs, "--gravity: the density must be above 0"},
-           {"0:2 --predict --labels --gravity 2000 8", "--gravity: is of the whole mesh"},
-           {"0:2 -o {member}.ply --manifest pipe",
-            "pipe is a folder, a device or a pipe; give the name of a file"},
-           {"0:2 -o {member}.ply --manifest 0000012.ply", "is the name of two outputs"}}) {
-    refuse("r.json --members " + words, culprit);
-  }
+  refuse_all(
+      "r.json --members ",
+      {{"5:5" + outputs, "--members: 5:5 holds no member"},
+       {"7:5" + outputs, "--members: 7:5 holds no member"},
+       {"-1:5" + outputs, "--members: must be A:B"},
+       {"0:9007199254740993" + outputs, "--members: must be A:B"},
+       {"12" + outputs, "--members: must be A:B"},
+       {"0:2 -o body.ply --manifest m.jsonl", "--output: every member writes"},
+       {"0:2 --preview {member}.png --preview-maps a.npz" + outputs, "--preview-maps: every member writes"},
+       {"0:2 -o {member}.ply --manifest \"\"", "--manifest: is given without a name"},
+       {"0:2 --manifest m.jsonl --out \"\"", "--out: is given without a name"},
+       {"0:2 --write-recipe {member}.astro --preview {member}.png --manifest m.jsonl",
+        "--write-recipe without -o keeps recipes alone"},
+       {"0:2 --predict -o {member}.obj --labels", ".ply"},
+       {"0:2 --predict -o {member}.foo", "{member}.foo"},
+       // Options that contradict each other are no failure of each member.
+       {"0:2 --labels --gravity 2000 8" + outputs, "--gravity: is of the whole mesh"},
+       {"0:2 --gravity -1 8" + outputs, "--gravity: the density must be above 0"},
+       {"0:2 --predict --labels --gravity 2000 8", "--gravity: is of the whole mesh"},
+       {"0:2 -o {member}.ply --manifest pipe",
+        "pipe is a folder, a device or a pipe; give the name of a file"},
+       {"0:2 -o {member}.ply --manifest 0000012.ply", "is the name of two outputs"}});
 }
 
 // Without a family a member is the body that --seed makes of its number, and needs no manifest.

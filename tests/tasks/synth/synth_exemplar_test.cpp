@@ -1,11 +1,11 @@
-// synth with exemplar layers, whose images lie beside the recipe, run as a user runs it.
+// synth with exemplar layers, whose images lie beside the recipe.
 #include <png.h>
 
 #include <cstdint>
 
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "tests/apps/synth_runner.h"
+#include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
 namespace {

@@ -1,11 +1,11 @@
-// fit_shape, run as a user runs it.
-#include <algorithm>
+// fit_shape: a mesh becomes a recipe.
+#include "tasks/estimation/fit_shape.h"
 
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "tests/apps/inputs.h"
-#include "tests/apps/program_runner.h"
 #include "tests/support/data.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
@@ -13,9 +13,9 @@ namespace {
 using testing::has;
 
 // egg.obj is a slender ellipsoid: its mesh at a fixed number of cells along it has few triangles.
-class FitShape : public testing::ProgramTest {
+class FitShape : public testing::JobTest {
  protected:
-  FitShape() : ProgramTest(ASTROLITH_FIT_SHAPE) {
+  FitShape() : JobTest("fit_shape", testing::job_of(declare_fit_options, fit_shape)) {
     write("egg.obj", testing::ellipsoid_obj(2.5, 0.7, 0.6, 15, 24));
   }
   std::string fit(const std::string& output, const std::string& more) {
@@ -90,9 +90,6 @@ TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
   const std::string table = text("egg.csv");
   EXPECT_TRUE(has(table, "x,y,z,radius,mass\n"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3 + 12);
-  refuse("egg.obj -o no.json --density 2000", "--packing-only");
-  refuse("egg.obj -o no.json --bytes 500", "to which details would add; add --base-only");
-  refuse("egg.obj -o no.csv --packing-only --points 500", "excludes");
 }
 
 TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFitLong) {
@@ -159,12 +156,6 @@ TEST_F(FitShape, DetailsOfAnotherBodyAreScaledToThisOne) {
   EXPECT_NEAR(layer.amplitude, ratio, 0.1 * ratio);
   EXPECT_NEAR(layer.frequency * layer.amplitude, 0.5, 1e-9);
   refuse("egg.obj -o no.json --details bare.json", "bare.json");
-}
-
-TEST_F(FitShape, OptionsOfAnotherSearchForDetailsAreRefusedBeforeAnyWork) {
-  refuse("none.obj -o no.json --details relief --generations 3",
-         "--generations: are those of --details thesis");
-  refuse("none.obj -o no.json --details relief --base-only", "excludes");
 }
 
 TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
@@ -247,25 +238,22 @@ TEST_F(FitShape, VariationsAreAsAlikeAsAskedLong) {
   }
 }
 
-TEST_F(FitShape, SaysWhenTheNameOfTheBodyDoesNotGoWithTheUnit) {
-  for (const char* name : {"eros.obj", "erosion.obj"}) {
-    write(name, testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24));
-  }
-  const std::string packing = " -o t.csv --packing-only --spheres 2";
-  EXPECT_FALSE(has(succeed("eros.obj" + packing), "mean radius"));
-  EXPECT_TRUE(has(succeed("eros.obj --unit m" + packing), "mean radius"));
-  EXPECT_FALSE(has(succeed("erosion.obj --unit m" + packing), "mean radius"));
-}
-
-TEST_F(FitShape, TakesTheUnitThatTheMeshStates) {
-  write("m.obj", "# length unit: m\n" + testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24));
-  const std::string packing = " -o t.csv --packing-only --spheres 2";
-  succeed("m.obj" + packing);
+TEST_F(FitShape, TakesTheUnitThatTheMeshStatesAndAsksBack) {
+  const std::string egg = testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24);
+  for (const char* name : {"eros.obj", "erosion.obj"}) write(name, egg);
+  for (const std::string unit : {"m", "cm"}) write(unit + ".obj", "# length unit: " + unit + "\n" + egg);
+  const auto said = [&](const std::string& mesh) {
+    return succeed(mesh + " -o t.csv --packing-only --spheres 2");
+  };
+  EXPECT_FALSE(has(said("eros.obj"), "mean radius"));
+  EXPECT_TRUE(has(said("eros.obj --unit m"), "mean radius"));
+  EXPECT_FALSE(has(said("erosion.obj --unit m"), "mean radius"));
+  said("m.obj");
   EXPECT_TRUE(has(text("t.csv"), "lengths in m"));
-  EXPECT_TRUE(has(succeed("m.obj --unit km" + packing), "note: m.obj: states its unit as m; taken in km"));
+  EXPECT_TRUE(has(said("m.obj --unit km"), "note: m.obj: states its unit as m; taken in km"));
   EXPECT_TRUE(has(text("t.csv"), "lengths in km"));
-  write("cm.obj", "# length unit: cm\n" + testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24));
-  refuse("cm.obj" + packing, "cm.obj: states its unit as cm, which is none of km, m; convert its lengths");
+  refuse("cm.obj -o c.csv --packing-only",
+         "cm.obj: states its unit as cm, which is none of km, m; convert its lengths");
 }
 
 TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {
@@ -317,17 +305,23 @@ TEST_F(FitShape, BadMeshesAreRefused) {
   }
 }
 
-TEST_F(FitShape, BadFilesAreRefused) {
+// Options that contradict each other are refused before the mesh is read: none.obj does not exist.
+TEST_F(FitShape, BadFilesAndOddOptionsAreRefused) {
   std::filesystem::create_directory(folder_ / "folder");
-  for (const auto& [words, culprit] : {std::pair{"absent.obj -o out.json", "absent.obj"},
-                                       {"folder -o out.json", "folder"},
-                                       {"egg.obj -o absent/out.json", "out.json"},
-                                       {"egg.obj -o folder", "folder"},
-                                       {"egg.obj -o o.json --report egg.obj/report", "report"},
-                                       {"egg.obj -o o.json --spheres 0", "--spheres"},
-                                       {"egg.obj -o o.json --optimizer magic", "--optimizer"}}) {
-    refuse(words, culprit);
-  }
+  refuse_all("", {{"absent.obj -o out.json", "absent.obj"},
+                  {"folder -o out.json", "folder"},
+                  {"egg.obj -o absent/out.json", "out.json"},
+                  {"egg.obj -o folder", "folder"},
+                  {"egg.obj -o o.json --report egg.obj/report", "report"},
+                  {"egg.obj -o o.json --spheres 0", "--spheres"},
+                  {"egg.obj -o o.json --optimizer magic", "--optimizer"},
+                  {"egg.obj -o o.json --density 2000", "--packing-only"},
+                  {"egg.obj -o o.csv --packing-only --points 500", "excludes"},
+                  {"egg.obj -o o.json --details thesis --bytes 500",
+                   "to which other details would add; add --base-only"},
+                  {"none.obj -o o.json --details relief --generations 3",
+                   "--generations: are those of --details thesis"},
+                  {"none.obj -o o.json --details relief --base-only", "excludes"}});
 }
 
 }  // namespace

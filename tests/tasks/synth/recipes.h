@@ -1,13 +1,9 @@
-// What the tests of synth share: recipes, and a folder to run the program in.
+// Recipes of the tests of synth.
 #pragma once
 
 #include <string>
 
-#include "tests/apps/program_runner.h"
-
 namespace astrolith {
-
-inline const std::string kSynth = ASTROLITH_SYNTH;
 
 inline const std::string kTwoSpheres = R"({"format_version": 1, "length_unit": "km",
   "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
@@ -26,25 +22,5 @@ inline std::string ball_recipe(const std::string& unit, double radius, const std
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
-
-// r.json is the recipe of two spheres.
-class SynthTest : public testing::ProgramTest {
- protected:
-  SynthTest() : ProgramTest(kSynth) { write("r.json", kTwoSpheres); }
-
-  // Meshes r.json with --resolution 32 and returns the bytes of the output.
-  std::string synthesise(const std::string& output, const std::string& more = "") const {
-    succeed("r.json -o " + output + " --resolution 32 " + more);
-    return text(output);
-  }
-  // The summary of a run of the command line.
-  nlohmann::json figures(const std::string& line) const {
-    succeed(line + " --summary s.json");
-    return json("s.json");
-  }
-  void expect_recipe_refused(const std::string& recipe, const std::string& culprit) const {
-    refuse(write("bad.json", recipe) + " -o out.ply --resolution 16", "bad.json: " + culprit);
-  }
-};
 
 }  // namespace astrolith

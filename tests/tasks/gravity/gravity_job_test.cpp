@@ -1,15 +1,13 @@
-// gravity, run as a user runs it.
-#include <signal.h>
+// gravity: of bodies and points, of parts of other densities, and landing sites.
+#include "tasks/gravity/gravity_job.h"
 
-#include <chrono>
 #include <cstring>
 #include <numbers>
-#include <thread>
 
 #include "geometry/io/mesh_io.h"
-#include "tests/apps/inputs.h"
-#include "tests/apps/program_runner.h"
 #include "tests/support/meshes.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
@@ -18,13 +16,12 @@ using testing::ellipsoid_obj;
 using testing::has;
 using testing::Outcome;
 
-const std::string kGravity = ASTROLITH_GRAVITY;
 constexpr double kConstant = 6.67430e-11;
 
 // ball.obj has radius 1.
-class Gravity : public testing::ProgramTest {
+class Gravity : public testing::JobTest {
  protected:
-  Gravity() : ProgramTest(kGravity) { write("ball.obj", ellipsoid_obj(1, 1, 1, 31, 64)); }
+  Gravity() : JobTest("gravity", declare_gravity) { write("ball.obj", ellipsoid_obj(1, 1, 1, 31, 64)); }
 
   nlohmann::json gravity(const std::string& line) {
     const Outcome outcome = run(line);
@@ -46,25 +43,21 @@ class Gravity : public testing::ProgramTest {
 };
 
 TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
-  const Outcome likely = run("ball.obj --density 2670");
-  EXPECT_EQ(likely.errors, "");
-  const Outcome light = run("ball.obj --density 2.67");
-  EXPECT_EQ(light.status, 0);
-  EXPECT_TRUE(has(light.errors, "a density of 2.67 kg/m^3 is that of no solid; for 2.67 g/cm^3 give 2670"));
   write_mesh(testing::two_spheres(2, 1, 2.5), folder_ / "two.ply", {});
-  const Outcome two = run("two.ply --density 2000");
-  EXPECT_EQ(two.status, 0) << two.errors;
-  EXPECT_TRUE(has(two.errors, "two.ply: holds 2 bodies apart from one another, the largest is taken"));
-  const Outcome both = run("two.ply --density 2000 --all-parts");
-  EXPECT_TRUE(has(both.errors, "two.ply: holds 2 surfaces apart from one another"));
   write("metres.obj", ellipsoid_obj(2000, 2000, 1500, 31, 64));
-  EXPECT_TRUE(
-      has(run("metres.obj --density 2000").errors,
-          "note: metres.obj: a mean radius of 1815 km is above that of any asteroid or comet; is --unit km"));
-  EXPECT_EQ(run("metres.obj --density 2000 --unit m").errors, "");
   write("bennu_v20.obj", ellipsoid_obj(280, 270, 250, 31, 64));
-  EXPECT_TRUE(
-      has(run("bennu_v20.obj --density 1190").errors, "km is not that of bennu (0.245 km); is --unit km"));
+  EXPECT_EQ(run("ball.obj --density 2670").errors, "");
+  EXPECT_EQ(run("metres.obj --density 2000 --unit m").errors, "");
+  for (const auto& [line, words] : testing::Refusals{
+           {"ball.obj --density 2.67",
+            "a density of 2.67 kg/m^3 is that of no solid; for 2.67 g/cm^3 give 2670"},
+           {"two.ply --density 2000", "two.ply: holds 2 bodies apart from one another, the largest is taken"},
+           {"two.ply --density 2000 --all-parts", "two.ply: holds 2 surfaces apart from one another"},
+           {"metres.obj --density 2000",
+            "note: metres.obj: a mean radius of 1815 km is above that of any asteroid or comet; is --unit "
+            "km"},
+           {"bennu_v20.obj --density 1190", "km is not that of bennu (0.245 km); is --unit km"}})
+    EXPECT_TRUE(has(succeed(line), words));
 }
 
 TEST_F(Gravity, TakesTheUnitThatAFileStates) {
@@ -232,25 +225,6 @@ TEST_F(Gravity, PartsOfOtherDensities) {
   }
 }
 
-// Ctrl-C after the program has begun its longest work.
-TEST_F(Gravity, CtrlCStopsItWithinASecondAndLeavesNoFile) {
-  using Clock = std::chrono::steady_clock;
-  write("fine.obj", ellipsoid_obj(3, 2, 1, 101, 200));
-  write("point.csv", "9 0 0\n");
-  const std::set<std::string> before = folder_.files();
-  for (const std::string longest : {"--points point.csv --degree 50", "--exact"}) {
-    const std::string line = "fine.obj --density 2000 --sample 0 --quiet -o fine.csv " + longest;
-    const pid_t child = testing::start_program(kGravity, testing::words_of(line), folder_.path());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << longest << " ended before it could be stopped";
-    const auto pressed = Clock::now();
-    ::kill(child, SIGINT);
-    EXPECT_EQ(testing::status_of(child), 1) << longest;
-    EXPECT_LT(std::chrono::duration<double>(Clock::now() - pressed).count(), 1.0) << longest;
-    EXPECT_EQ(folder_.files(), before) << longest;
-  }
-}
-
 // A ball that lacks a facet, one whose facets look inwards, and the ball itself have one mass.
 TEST_F(Gravity, DamagedMeshesAreRepaired) {
   const std::string ball = ellipsoid_obj(1, 1, 1, 24, 36);
@@ -276,31 +250,25 @@ TEST_F(Gravity, BadInputIsRefused) {
   write("few.csv", "1 2 3\n1 2\n");
   write("none.csv", "# nothing\n");
   refuse("ball.obj", "--density");
-  for (const auto& [words, culprit] : {std::pair{"ball.obj --density 0", "--density"},
-                                       {"ball.obj --density -5", "--density"},
-                                       {"ball.obj --density nan", "--density"},
-                                       {"ball.obj --period 0", "--period"},
-                                       {"ball.obj --period -3", "--period"},
-                                       {"ball.obj --axis 0 0 0", "--axis"},
-                                       {"ball.obj -o x.ply", "--at vertices"},
-                                       {"ball.obj -o x.obj", "x.obj"},
-                                       {"ball.obj -o ball.obj", "ball.obj"},
-                                       {"open.obj", "open.obj"},
-                                       {"empty.obj", "empty.obj"},
-                                       {"turned.obj --strict", "turned.obj"},
-                                       {"turned.obj --strict --wrap", "--wrap"},
-                                       {"ball.obj --density-of ball.obj", "--density-of"},
-                                       {"ball.obj --density-of ball.obj=-1", "0 to 1e6"},
-                                       {"ball.obj --density-of ball.obj=1e3x", "0 to 1e6"},
-                                       {"ball.obj --density-of open.obj=1000", "open.obj"},
-                                       {"ball.obj --density-of ball.obj=0", "no mass"},
-                                       {"ball.obj --density-of beside.obj=1000", "leaves the body"},
-                                       {"ball.obj --points nan.csv", "nan.csv: line 2"},
-                                       {"ball.obj --points few.csv", "few.csv: line 2"},
-                                       {"ball.obj --points none.csv", "none.csv"}}) {
-    const std::string line = words;
-    refuse(line + (line.find("--density ") == std::string::npos ? " --density 2000" : ""), culprit);
-  }
+  refuse_all("ball.obj --density ", {{"0", "--density"}, {"-5", "--density"}, {"nan", "--density"}});
+  refuse_all("--density 2000 ", {{"ball.obj --period 0", "--period"},
+                                 {"ball.obj --period -3", "--period"},
+                                 {"ball.obj --axis 0 0 0", "--axis"},
+                                 {"ball.obj -o x.ply", "--at vertices"},
+                                 {"ball.obj -o x.obj", "x.obj"},
+                                 {"open.obj", "open.obj"},
+                                 {"empty.obj", "empty.obj"},
+                                 {"turned.obj --strict", "turned.obj"},
+                                 {"turned.obj --strict --wrap", "--wrap"},
+                                 {"ball.obj --density-of ball.obj", "--density-of"},
+                                 {"ball.obj --density-of ball.obj=-1", "0 to 1e6"},
+                                 {"ball.obj --density-of ball.obj=1e3x", "0 to 1e6"},
+                                 {"ball.obj --density-of open.obj=1000", "open.obj"},
+                                 {"ball.obj --density-of ball.obj=0", "no mass"},
+                                 {"ball.obj --density-of beside.obj=1000", "leaves the body"},
+                                 {"ball.obj --points nan.csv", "nan.csv: line 2"},
+                                 {"ball.obj --points few.csv", "few.csv: line 2"},
+                                 {"ball.obj --points none.csv", "none.csv"}});
 }
 
 // A ball at rest is level everywhere, but its ground below z = .4 is wavy here. A square of side L on a ball
@@ -333,17 +301,12 @@ TEST_F(Gravity, SitesAreLevelGroundApartFromOneAnother) {
   EXPECT_TRUE(has(outcome.errors, "synth RECIPE.json --patch " + sites[0]["patch"].get<std::string>()));
   EXPECT_EQ(gravity(line + " --threads 1")["sites"], sites);
   EXPECT_TRUE(has(run(line + " --site-distance 5").errors, "the body has 1 sites"));
-  for (const auto& [options, message] : std::vector<std::pair<std::string, std::string>>{
-           {"--sites 2", "--site-size"},
-           {"--sites 2 --site-size 0.01", "is less than 4 edges"},
-           {"--sites 2 --site-size 3", "more than a quarter"},
-           {"--sites 0 --site-size 0.3", "--sites"},
-           {"--sites 2 --site-size 0.3 --at vertices", "slopes of facets"},
-           {"--site-size 0.3", "--sites"}}) {
-    const Outcome refused = run("wavy.ply --density 2000 " + options);
-    EXPECT_EQ(refused.status, 2) << options;
-    EXPECT_TRUE(has(refused.errors, message)) << refused.errors;
-  }
+  refuse_all("wavy.ply --density 2000 ", {{"--sites 2", "--site-size"},
+                                          {"--sites 2 --site-size 0.01", "is less than 4 edges"},
+                                          {"--sites 2 --site-size 3", "more than a quarter"},
+                                          {"--sites 0 --site-size 0.3", "--sites"},
+                                          {"--sites 2 --site-size 0.3 --at vertices", "slopes of facets"},
+                                          {"--site-size 0.3", "--sites"}});
 }
 
 }  // namespace

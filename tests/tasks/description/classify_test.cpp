@@ -1,8 +1,11 @@
-// classify: folders of meshes to a classifier, meshes to classes, as a user runs it.
-#include <sstream>
+// classify: folders of meshes to a classifier, meshes to classes.
+#include "tasks/description/classify.h"
 
-#include "tests/apps/inputs.h"
-#include "tests/apps/labelled_shapes.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/hash_random.h"
+#include "tests/support/meshes.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
@@ -12,9 +15,35 @@ using testing::Outcome;
 
 const std::string kTrain = "train shapes -o model.yml --points 500 --trees 40 --folds 3 ";
 
-class Classify : public testing::LabelledShapesTest {
+// A mesh of a class, stretched a little and with every vertex moved a little.
+TriangleMesh shape_of(const std::string& kind, std::uint64_t seed) {
+  TriangleMesh mesh = kind == "ball" ? testing::icosphere(3) : testing::torus(1, 0.4, 24, 12);
+  if (kind == "box") {
+    mesh = testing::cube(1.0);
+    for (int i = 0; i < 3; ++i) mesh = testing::subdivided(mesh);
+  }
+  CounterRandom random(seed);
+  const Vec3d stretch{random.uniform(0.9, 1.1), random.uniform(0.9, 1.1), random.uniform(0.9, 1.1)};
+  for (Vec3d& p : mesh.vertices) {
+    p = {p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
+    p += 0.01 * Vec3d{random.normal(), random.normal(), random.normal()};
+  }
+  return mesh;
+}
+
+// shapes/ball, shapes/box and shapes/ring hold six meshes each. A fresh mesh of each class lies beside them.
+class Classify : public testing::JobTest {
  protected:
-  Classify() : LabelledShapesTest(ASTROLITH_CLASSIFY) {}
+  Classify() : JobTest("classify", declare_classify) {
+    std::uint64_t seed = 0;
+    for (const std::string kind : {"ball", "box", "ring"}) {
+      const std::string folder = "shapes/" + kind + "/";
+      std::filesystem::create_directories(folder_ / folder);
+      for (int i = 0; i < 6; ++i)
+        write_mesh(shape_of(kind, ++seed), folder_ / (folder + std::to_string(i) + ".ply"), {});
+      write_mesh(shape_of(kind, ++seed), folder_ / (kind + ".obj"), {});
+    }
+  }
 };
 
 std::vector<nlohmann::json> lines_of(const std::string& output) {
@@ -107,21 +136,18 @@ TEST_F(Classify, NamesFilesThatItSkipsAndOpenMeshesThatItTakes) {
 TEST_F(Classify, RefusesByName) {
   write("mesh.obj", testing::kTetrahedron);
   write("bad.yml", "%YAML:1.0\n---\n");
-  for (const auto& [words, culprit] : std::vector<std::pair<std::string, std::string>>{
-           {"train nowhere -o model.yml", "nowhere: is no folder"},
-           {"train mesh.obj -o model.yml", "mesh.obj: is no folder"},
-           {"train shapes/ball -o model.yml --folds 0 --points 50", "1 classes"},
-           {"train shapes -o no/such/model.yml", "model.yml"},
-           {"train shapes -o shapes/ball/0.ply --points 50", "0.ply: is no .yml"},
-           {kTrain + "--features shapedna", "--points"},
-           {kTrain + "--eigenvalues 5", "--eigenvalues"},
-           {kTrain + "--bins 64", "bins 64"},
-           {kTrain + "--features d2 --pca 500", "500 of"},
-           {"predict absent.yml ring.obj", "absent.yml"},
-           {"predict bad.yml ring.obj", "bad.yml"},
-           {"predict ring.obj ring.obj", "ring.obj"}}) {
-    refuse(words, culprit);
-  }
+  refuse_all("", {{"train nowhere -o model.yml", "nowhere: is no folder"},
+                  {"train mesh.obj -o model.yml", "mesh.obj: is no folder"},
+                  {"train shapes/ball -o model.yml --folds 0 --points 50", "1 classes"},
+                  {"train shapes -o no/such/model.yml", "model.yml"},
+                  {"train shapes -o shapes/ball/0.ply --points 50", "0.ply: is no .yml"},
+                  {kTrain + "--features shapedna", "--points"},
+                  {kTrain + "--eigenvalues 5", "--eigenvalues"},
+                  {kTrain + "--bins 64", "bins 64"},
+                  {kTrain + "--features d2 --pca 500", "500 of"},
+                  {"predict absent.yml ring.obj", "absent.yml"},
+                  {"predict bad.yml ring.obj", "bad.yml"},
+                  {"predict ring.obj ring.obj", "ring.obj"}});
   std::filesystem::create_directories(folder_ / "shapes/dust");
   refuse(kTrain + "--features wahl", "dust: holds no meshes");
   write("shapes/dust/broken.ply", testing::truncated_ply());
@@ -130,14 +156,12 @@ TEST_F(Classify, RefusesByName) {
 }
 
 TEST_F(Classify, WrongCommandLinesAreRefused) {
-  for (const auto& [words, culprit] : {std::pair{"", "required"},
-                                       {"train", "required"},
-                                       {"predict model.yml", "required"},
-                                       {"train in -o out --no-such-option", "--no-such-option"},
-                                       {"train in -o out --trees 0", "--trees"},
-                                       {"predict in out --threads many", "--threads"}}) {
-    refuse(words, culprit);
-  }
+  refuse_all("", {{"", "required"},
+                  {"train", "required"},
+                  {"predict model.yml", "required"},
+                  {"train in -o out --no-such-option", "--no-such-option"},
+                  {"train in -o out --trees 0", "--trees"},
+                  {"predict in out --threads many", "--threads"}});
   EXPECT_EQ(run("--version").output.rfind("classify ", 0), 0u);
   for (const std::string command : {"train", "predict"}) {
     const Outcome help = run(command + " --help");

@@ -1,15 +1,15 @@
-// render, run as a user runs it.
-#include <string>
+// render: pictures of meshes, in the colours of a property.
+#include "tasks/synthesis/render.h"
 
-#include "tests/apps/program_runner.h"
+#include "tests/tasks/job_runner.h"
 
 namespace astrolith {
 namespace {
 
 // v.ply is a tetrahedron with a property "age_s" of its vertices.
-class Render : public testing::ProgramTest {
+class Render : public testing::JobTest {
  protected:
-  Render() : ProgramTest(ASTROLITH_RENDER) {
+  Render() : JobTest("render", declare_render) {
     write("v.ply",
           "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
           "property int age_s\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
@@ -28,8 +28,7 @@ TEST_F(Render, DrawsMeshesInTheColoursOfAProperty) {
   EXPECT_FALSE(picture("--color age_s") == picture("--color age_s --title Age"));
   EXPECT_FALSE(plain == picture("--color z"));
   EXPECT_TRUE(plain == picture("--threads 1"));
-  succeed("v.ply -o p.png --color age_s --range -1 5 --summary s.json");
-  EXPECT_EQ(json("s.json")["range"], nlohmann::json({-1, 5}));
+  EXPECT_EQ(figures("v.ply -o p.png --color age_s --range -1 5")["range"], nlohmann::json({-1, 5}));
   const std::string in_metres = picture("--unit m");
   EXPECT_FALSE(plain == in_metres);
   write("v.ply", text("v.ply").replace(0, 4, "ply\ncomment length unit: m\n"));
@@ -37,16 +36,16 @@ TEST_F(Render, DrawsMeshesInTheColoursOfAProperty) {
 }
 
 TEST_F(Render, RefusesWhatCannotBeDrawn) {
-  refuse("v.ply -o q.png --color slope",
-         "v.ply: the vertices have no property 'slope'; choose from x, y, z, age_s");
-  refuse("v.ply -o q.png --color age_s --range 2 2", "--range");
-  refuse("v.ply -o q.jpg", "q.jpg");
-  refuse("v.ply -o q.png --picture-size 0x0", "--picture-size");
-  refuse("v.ply -o q.png --picture-size 1000000x1000000", "--picture-size");
-  refuse("v.ply -o q.png --sun 0 0 0", "--sun");
-  refuse("v.ply -o q.png --camera \"at .1 .1 .1 target 1 1 1 fov 30\"", "stands inside the body");
   write("o.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   refuse("o.obj -o q.png --color age", "o.obj: has no properties of vertices; give a .ply");
+  refuse("v.ply -o q.jpg", "q.jpg");
+  refuse_all("v.ply -o q.png ",
+             {{"--color slope", "v.ply: the vertices have no property 'slope'; choose from x, y, z, age_s"},
+              {"--color age_s --range 2 2", "--range"},
+              {"--picture-size 0x0", "--picture-size"},
+              {"--picture-size 1000000x1000000", "--picture-size"},
+              {"--sun 0 0 0", "--sun"},
+              {"--camera \"at .1 .1 .1 target 1 1 1 fov 30\"", "stands inside the body"}});
 }
 
 }  // namespace
