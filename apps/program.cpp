@@ -11,7 +11,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <new>
 
@@ -182,18 +181,13 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   }
 }
 
-double Program::processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-double Program::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
 void Program::timed(const std::function<void()>& work) {
   options.check_files();
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) {
     require_extension(summary_file, {".json"});
-    if (!makes_folders || !makes_folders()) require_writable(summary_file);
+    // Work that makes folders makes that of the summary, too, and then checks that it can be written.
+    if (!options.makes_folders()) require_writable(summary_file);
   }
   start_ = std::chrono::steady_clock::now();
   work();

@@ -9,7 +9,6 @@
 //   }
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -52,19 +51,8 @@ class Program : public Job {
   // Writes the summary so far into a file, with the seconds and an interruption; run() does it in the end.
   void save_summary(const std::string& file);
 
-  // Wall-clock seconds since run() began the work.
-  double seconds() const;
-  // Seconds that all threads of the program have spent so far, from its start.
-  static double processor_seconds();
-
-  OptionTable& app = options;
-
   int threads = 0;  // 0 = all
-  bool quiet = false;
   std::string summary_file;
-  // Whether the work makes missing folders of its outputs. It then makes that of the summary too, and checks
-  // that the summary can be written. May be empty.
-  std::function<bool()> makes_folders;
 
  private:
   void timed(const std::function<void()>& work);
@@ -72,7 +60,6 @@ class Program : public Job {
   std::string naming_options(const std::string& message) const;
 
   std::string description_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<std::string> notes_;
   bool part_failed_ = false;
 };

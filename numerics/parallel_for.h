@@ -29,6 +29,11 @@ class ThreadLimit {
   tbb::global_control control_;
 };
 
+// The most threads that parallel loops have now.
+inline int thread_limit() {
+  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 // Calls body(i) for every i in [begin, end), in any order and in tasks of about `grain` indices or more. An
 // exception that a body throws is rethrown here.
 template <typename Body>

@@ -1,11 +1,11 @@
-// Seconds that the processor has spent on the calling thread. Other programs on the machine do not change
-// them.
+// Seconds of the processor, which other programs on the machine do not change.
 #pragma once
 
 #include <ctime>
 
 namespace astrolith {
 
+// Seconds that the processor has spent on the calling thread.
 class ProcessorClock {
  public:
   double seconds() const { return now() - start_; }
@@ -18,5 +18,8 @@ class ProcessorClock {
   }
   double start_ = now();
 };
+
+// Seconds that all threads of this process have spent so far.
+inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 }  // namespace astrolith

@@ -55,6 +55,7 @@ tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/j
 tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
 tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair tasks/synthesis
 tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/synthesis
+tasks/synth                -> numerics recipe geometry gravity synthesis cuda tasks/job tasks/gravity tasks/synthesis tasks/prediction
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
 python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python

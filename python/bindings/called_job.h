@@ -30,10 +30,12 @@ class CalledJob : public Job {
   Progress progress(std::string stage) const override { return state_.progress(stage); }
   bool stopped() const override { return state_.stopped(); }
   const char* stopped_by() const override { return "the caller"; }
-  void say(const std::string& line) const override { remarks_.push_back(line); }
+  void say(const std::string& line) const override {
+    if (!quiet) remarks_.push_back(line);
+  }
   void note(const std::string& line) override { say(line); }
   void print_result(const std::string&) override {}  // the figures have it
-  void report_failure(const std::string& line) override { say(line); }
+  void report_failure(const std::string& line) override { remarks_.push_back(line); }
 
   // Fills the declared options. Throws InputError where a value, a combination or a file cannot be.
   void take(const GivenOptions& given) {

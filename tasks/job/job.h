@@ -3,6 +3,7 @@
 // each a job with another caller.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -37,6 +38,10 @@ class Job {
   // Reports a part of the work that failed while the rest goes on.
   virtual void report_failure(const std::string& line) = 0;
 
+  // Wall-clock seconds since the work began.
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
   StageProgress stages() const {
     return [this](const std::string& stage) { return progress(stage); };
   }
@@ -46,12 +51,14 @@ class Job {
   OptionTable options;
   nlohmann::ordered_json summary;
   std::uint64_t seed = 1;
+  bool quiet = false;  // the job tells nothing but failures
 
  protected:
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
   std::string name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace astrolith

@@ -221,6 +221,11 @@ Option& Option::writes(FilesOf files) {
   return without_effect();
 }
 
+Option& Option::makes_folders() {
+  row_->makes_folders = true;
+  return *this;
+}
+
 Option& Option::without_effect() {
   row_->decides_result = false;
   return *this;
@@ -330,6 +335,11 @@ void OptionTable::check_files() const {
       }
     }
   }
+}
+
+bool OptionTable::makes_folders() const {
+  const std::vector<const OptionRow*> given = given_rows();
+  return std::any_of(given.begin(), given.end(), [](const OptionRow* row) { return row->makes_folders; });
 }
 
 void OptionTable::require_not_written(const fs::path& file) const {

@@ -59,6 +59,7 @@ struct OptionRow {
   bool required = false;             // on a command line
   bool repeated = false;             // given again for each value
   bool decides_result = true;        // stated in the provenance of results
+  bool makes_folders = false;        // the job then makes missing folders of its outputs
   int count = 0;                     // of values of a vector; 0: any
   std::vector<std::string> words{};  // as they were given; those of a flag that was given are "true"
 
@@ -99,6 +100,8 @@ class Option {
   Option& reads(FilesOf files = {});
   // The words name files that are written, or, with a function, names from which others are made.
   Option& writes(FilesOf files = {});
+  // Where the option is given, the job makes missing folders of its outputs.
+  Option& makes_folders();
   // The option says where or how fast, not what: results do not state it.
   Option& without_effect();
 
@@ -159,6 +162,8 @@ class OptionTable {
   // Throws InputError where a file that is written has no name, is also read, or is written by another
   // option, too.
   void check_files() const;
+  // Whether the job makes missing folders of its outputs.
+  bool makes_folders() const;
   // Throws InputError where an option writes this file, of which a job learns while it works.
   void require_not_written(const std::filesystem::path& file) const;
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <span>
 #include <thread>
 
@@ -171,7 +170,7 @@ int threads_of(const PlannedRun& run) {
 
 MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles,
                             const PlannedRun& run) {
-  const std::clock_t start = std::clock();
+  const double start = processor_seconds();
   const double peak_before = static_cast<double>(peak_bytes());
   MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region);
   const MeshEstimate estimate =
@@ -202,7 +201,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
       std::min(run.clock_seconds, run.processor_seconds) + parallel / threads_of(run) + serial;
   predicted.processor_seconds = run.processor_seconds + parallel + serial;
   predicted.own_evaluations = estimate.own_evaluations;
-  predicted.own_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  predicted.own_seconds = processor_seconds() - start;
   return predicted;
 }
 

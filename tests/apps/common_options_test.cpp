@@ -57,12 +57,12 @@ TEST_P(EveryProgram, VersionIsOneLine) {
 TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
   const testing::ScratchFolder folder;
   const std::string output = (folder / "out").string();
-  testing::expect_refusal(folder, GetParam(), {}, "required");
+  testing::expect_program_refusal(folder, GetParam(), {}, "required");
   const auto refuse = [&](std::vector<std::string> more, const std::string& culprit) {
     std::vector<std::string> arguments{"in", "-o", output};
     if (name() == "compare") arguments.push_back("other_in");
     arguments.insert(arguments.end(), more.begin(), more.end());
-    testing::expect_refusal(folder, GetParam(), arguments, culprit);
+    testing::expect_program_refusal(folder, GetParam(), arguments, culprit);
   };
   refuse({"--no-such-option"}, "--no-such-option");
   refuse({"--threads", "many"}, "--threads");
@@ -74,7 +74,7 @@ TEST_P(EveryProgram, OutputsWithAWrongEndingAreRefusedBeforeAnyWork) {
   std::vector<std::string> arguments{"in", "-o", (folder / "out.docx").string()};
   if (name() == "compare") arguments.push_back("other_in");
   if (name() == "gravity") arguments.insert(arguments.end(), {"--density", "2000"});
-  testing::expect_refusal(folder, GetParam(), arguments, "out.docx: ");
+  testing::expect_program_refusal(folder, GetParam(), arguments, "out.docx: ");
 }
 
 std::string file_name(const ::testing::TestParamInfo<const char*>& program) {

@@ -1,29 +1,13 @@
-// Runs a built program as a user would, in a folder of its own, and checks its messages and its files.
+// Runs a built program as a user would, in a folder of its own.
 #pragma once
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <algorithm>
-#include <iomanip>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <utility>
-#include <vector>
-
-#include "tests/support/refusal.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/command_test.h"
 
 namespace astrolith::testing {
-
-using WorkFolder = ScratchFolder;
-
-struct Outcome {
-  int status = -1;  // exit status, or 128 + the signal that ended the program
-  std::string output, errors;
-};
 
 // Starts the program in the folder `place`. Returns -1 where that fails.
 inline pid_t start_program(const std::string& program, std::vector<std::string> arguments,
@@ -60,57 +44,21 @@ inline Outcome run_program(const std::string& program, const std::vector<std::st
   return {status, text_of(output), text_of(errors)};
 }
 
-// The words of a command line, which spaces separate; "" is an empty word.
-inline std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  std::istringstream text(line);
-  for (std::string word; text >> std::quoted(word);) words.push_back(word);
-  return words;
+inline void expect_program_refusal(const ScratchFolder& folder, const std::string& program,
+                                   const std::vector<std::string>& arguments, const std::string& culprit) {
+  expect_refusal(folder, std::filesystem::path(program).filename(), culprit,
+                 [&] { return run_program(program, arguments, folder.path()); });
 }
 
-// Checks the promise about bad input: status 2, one line that names `culprit` and a remedy, and no file left
-// behind.
-inline void expect_refusal(const ScratchFolder& folder, const std::string& program,
-                           const std::vector<std::string>& arguments, const std::string& culprit) {
-  const std::set<std::string> before = folder.files();
-  const Outcome outcome = run_program(program, arguments, folder.path());
-  const std::string name = std::filesystem::path(program).filename();
-  EXPECT_EQ(outcome.status, 2) << outcome.errors;
-  EXPECT_EQ(outcome.errors.rfind(name + ": ", 0), 0u) << outcome.errors;
-  EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
-  EXPECT_TRUE(has(outcome.errors, culprit));
-  EXPECT_TRUE(has(outcome.errors, "; ") || has(outcome.errors, ": must be ")) << outcome.errors;
-  EXPECT_EQ(outcome.output, "");
-  EXPECT_EQ(folder.files(), before);
-}
-
-// A test of one program. Names of files are those of the test's own folder, where the program runs.
-class ProgramTest : public ::testing::Test {
+// A test of one program, each run of which is a process.
+class ProgramTest : public CommandTest {
  protected:
-  explicit ProgramTest(std::string program) : program_(std::move(program)) {}
+  explicit ProgramTest(const std::string& program)
+      : CommandTest(std::filesystem::path(program).filename()), program_(program) {}
 
-  // Returns the name, to be put into a command line.
-  std::string write(const std::string& name, std::string_view content) const {
-    folder_.write(name, content);
-    return name;
+  Outcome run(const std::string& line) const override {
+    return run_program(program_, words_of(line), folder_.path());
   }
-  std::string text(const std::string& name) const { return text_of(folder_ / name); }
-  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(text(name)); }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
-
-  Outcome run(const std::string& line) const { return run_program(program_, words_of(line), folder_.path()); }
-  // Expects that the program succeeds, and returns what it says.
-  std::string succeed(const std::string& line) const {
-    const Outcome outcome = run(line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.errors;
-    return outcome.errors;
-  }
-  void refuse(const std::string& line, const std::string& culprit) const {
-    SCOPED_TRACE(line);
-    expect_refusal(folder_, program_, words_of(line), culprit);
-  }
-
-  ScratchFolder folder_;
 
  private:
   std::string program_;

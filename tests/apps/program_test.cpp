@@ -109,7 +109,7 @@ TEST(Program, RangesAreStatedInWords) {
   double number = 1.0;
   for (const char* wrong : {"0", "-1", "nan", "much"}) {
     Program program("tool", "A program for tests.");
-    program.app.add_option("--size", number, "a size").check(above_zero());
+    program.options.add_option("--size", number, "a size").check(above_zero());
     std::vector<std::string> arguments{"tool", "--size", wrong};
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());

@@ -1,18 +1,14 @@
-// synth, run as a user runs it: the whole mesh.
+// synth as a process: its memory, and the C library's code for other processors.
 #include <algorithm>
 
-#include "geometry/io/mesh_io.h"
-#include "geometry/mesh_topology.h"
-#include "numerics/files/sha256.h"
-#include "numerics/files/zstd_stream.h"
-#include "tests/apps/synth_runner.h"
+#include "numerics/memory_use.h"
+#include "tests/apps/program_runner.h"
+#include "tests/tasks/synth/recipes.h"
 
 namespace astrolith {
 namespace {
 
 using testing::has;
-
-using Synth = SynthTest;
 
 const std::string kDrawnCraters = ball_recipe("m", 100, R"(,
   "layers": [{"type": "simplex", "amplitude": 3, "frequency": 0.02, "octaves": 3},
@@ -20,9 +16,9 @@ const std::string kDrawnCraters = ball_recipe("m", 100, R"(,
 
 // The C library has other code, with other last bits, for processors without fma. Its tunables choose that
 // code here.
-class SynthByProcessor : public Synth {
+class SynthByProcessor : public testing::ProgramTest {
  protected:
-  SynthByProcessor() { write("r.json", kDrawnCraters); }
+  SynthByProcessor() : ProgramTest(ASTROLITH_SYNTH) { write("r.json", kDrawnCraters); }
   // What synth writes with the C library's code for this processor, or for one without wide vectors.
   std::string bytes(const std::string& tunables, const std::string& more) {
     ::setenv("GLIBC_TUNABLES", tunables.c_str(), 1);
@@ -42,172 +38,88 @@ TEST_F(SynthByProcessor, TheCLibrarysCodeChangesNothing) {
 
 TEST_F(SynthByProcessor, TheCLibrarysCodeChangesNoVariationLong) { expect_no_change("--vary 0.9 --seed 3"); }
 
-// The recipe's Gabor or fractal layers, by a GPU or without one.
-TEST_F(Synth, TheDeviceChangesNothing) {
-  const std::string by_cpu = synthesise("cpu.ply", "--device cpu");
-  EXPECT_EQ(synthesise("auto.ply", "--device auto"), by_cpu);
-  EXPECT_TRUE(has(succeed("r.json -o auto.ply --resolution 16 --device auto"), "; computed on "));
-  const testing::Outcome outcome = run("r.json -o cuda.ply --resolution 32 --device cuda");
-  if (outcome.status == 0) {
-    EXPECT_EQ(text("cuda.ply"), by_cpu);
-  } else {
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(has(outcome.errors, "--device cuda: "));
+std::string two_spheres_with(const std::string& layers, const std::string& more = "") {
+  return R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]}, "layers": [)" +
+         layers + "]" + more + "}";
+}
+
+// A body with a Gabor layer of three bands, which masks a second layer.
+const std::string kMaskedByGabor =
+    two_spheres_with(R"({"type": "gabor", "name": "grain", "pixel_size": 0.01, "height_rms": 0.01,
+      "lobes": [[2, 0.1, 0.1, 1], [3, 0.125, -0.25, 1], [4, 0.05, 0.02, 1]]},
+     {"type": "simplex", "amplitude": 0.05, "frequency": 2,
+      "mask": {"layer": "grain", "from": -0.01, "to": 0.01}})");
+
+// A Gabor layer of one band.
+std::string gabor_layer(double pixel_size, int impulses) {
+  return R"({"type": "gabor", "height_rms": 0.003, "lobes": [[3, 0.125, -0.25, 1]], "pixel_size": )" +
+         std::to_string(pixel_size) + ", \"impulses_per_kernel\": " + std::to_string(impulses) + "}";
+}
+
+class SynthMemory : public testing::ProgramTest {
+ protected:
+  SynthMemory() : ProgramTest(ASTROLITH_SYNTH) {}
+  void SetUp() override {
+    if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer has memory of its own";
   }
-}
+};
 
-TEST_F(Synth, FeaturesAreListedAsDrawn) {
-  const std::string craters = replaced(kTwoSpheres, "\"layers\": [", R"("layers": [{"type": "craters",
-    "craters": [{"direction": [0, 0, 1], "diameter": 0.5, "age": 9}], "complex_from": 0.4,
-    "population": {"count": 20, "least_diameter": 0.05, "greatest_diameter": 0.3}},
-    {"type": "boulders", "boulders": [{"direction": [0, 1, 0], "axes": [0.3, 0.2, 0.1]}]}, )");
-  write("c.json", craters);
-  for (const std::string list : {"f.csv", "f.json"}) {
-    succeed("c.json -o c.ply --resolution 24 --feature-list " + list);
+TEST_F(SynthMemory, MemoryStaysBelowWhatIsAllowed) {
+  write("masked.json", kMaskedByGabor);
+  int made = 0, refused = 0;
+  for (const double gigabytes : {0.01, 0.03, 0.045, 0.06, 0.5}) {
+    const testing::Outcome outcome =
+        run("masked.json -o out.ply --resolution 64 --threads 2 --summary s.json --max-memory " +
+            std::to_string(gigabytes));
+    if (outcome.status == 0) {
+      ++made;
+      EXPECT_LE(json("s.json").at("peak_bytes"), 1e9 * gigabytes);
+    } else {
+      ++refused;
+      EXPECT_EQ(outcome.status, 2) << outcome.errors;
+      EXPECT_TRUE(has(outcome.errors, "GB"));
+      EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+    }
   }
-  const auto document = json("f.json");
-  EXPECT_EQ(document["length_unit"], "km");
-  ASSERT_EQ(document["features"].size(), 22u);
-  EXPECT_EQ(document["features"][21]["kind"], "boulder");
-  EXPECT_EQ(document["features"][21]["axis_b"], 0.2);
-  EXPECT_FALSE(document["features"][21].contains("depth"));
-  EXPECT_EQ(document["features"][0]["kind"], "complex crater");  // the oldest
-  EXPECT_EQ(document["features"][0]["depth"], 0.03);
-  const std::string csv = text("f.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 23);
-  EXPECT_EQ(csv.rfind("layer,kind,x,y,z,mesh_x,mesh_y,mesh_z,center_x,", 0), 0u) << csv;
-  expect_recipe_refused(replaced(craters, "\"diameter\": 0.5", "\"diameter\": 50"),
-                        "layers[0].craters[0].diameter: is 50");
+  EXPECT_GE(made, 1);
+  EXPECT_GE(refused, 1);
 }
 
-TEST_F(Synth, GravityComesWithTheMesh) {
-  synthesise("plain.ply");
-  const std::string bytes = synthesise("g.ply", "--gravity 2000 6 --summary s.json");
-  for (const std::string name : {"potential_J_kg", "geopotential_J_kg", "slope_deg", "elevation_m"}) {
-    EXPECT_NE(bytes.find("property float " + name + "\n"), std::string::npos) << name;
-  }
-  const TriangleMesh mesh = read_mesh(folder_ / "g.ply"), same = read_mesh(folder_ / "plain.ply");
-  EXPECT_TRUE(mesh.vertices == same.vertices);
-  EXPECT_TRUE(mesh.triangles == same.triangles);
-  const auto gravity = json("s.json")["gravity"];
-  // Two balls of 1 and 0.75 km: U at the surface is about G M / r.
-  EXPECT_NEAR(gravity["potential_J_kg"]["mean"], -0.65, 0.15);
-  EXPECT_GT(gravity["slope_deg"]["max"], 10.0);
-  EXPECT_LE(gravity["achieved_error"]["largest"], 1e-6);
-  EXPECT_EQ(synthesise("one.ply", "--gravity 2000 6 --threads 1"), bytes);
+TEST_F(SynthMemory, MemoryOfImpulsesIsMetFromBothSides) {
+  const std::string line = write("masked.json", kMaskedByGabor) + " -o out.ply --resolution 96";
+  const auto predicted = figures(line + " --predict").at("predicted"), made = figures(line);
+  EXPECT_LE(made.at("peak_bytes"), 1.2 * predicted.at("peak_bytes").get<double>());
+  EXPECT_GE(made.at("peak_bytes"), 0.5 * predicted.at("peak_bytes").get<double>());
 }
 
-TEST_F(Synth, GravityThatMakesNoSenseIsRefused) {
-  for (const auto& [words, culprit] : {std::pair{"a.ply --gravity 0 6", "--gravity: the density"},
-                                       {"a.ply --gravity 2000 -1", "--gravity: the period"},
-                                       {"a.ply --gravity 2000 6 --points", "--gravity: is of the whole"},
-                                       {"a.ply --gravity 2000 6 --tile 1/2", "--gravity: is of the whole"},
-                                       {"a.obj --gravity 2000 6", "a.obj"}}) {
-    refuse(std::string("r.json --resolution 16 -o ") + words, culprit);
-  }
+// A warp that folds the surface leaves many blocks that it might cross and does not, and sheets of surface
+// that a coarse mesh does not show.
+TEST_F(SynthMemory, MemoryOfAFoldedSurfaceIsMetFromBothSides) {
+  write("r.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]],
+             "warp": {"amplitude": 0.5, "frequency": 2, "octaves": 3}}})");
+  const std::string line = "r.json -o out.ply --resolution 240 --threads 1";
+  const auto predicted = figures(line + " --predict").at("predicted"), made = figures(line);
+  const double memory = predicted.at("peak_bytes").get<double>() / made.at("peak_bytes").get<double>();
+  EXPECT_LE(memory, 1.2);
+  EXPECT_GE(memory, 1.0 / 1.2);
+  EXPECT_GE(predicted.at("triangles"), 0.8 * made.at("triangles").get<double>());
 }
 
-TEST_F(Synth, WritesIcqAndPlates) {
-  synthesise("a.tab");
-  EXPECT_TRUE(analyze_topology(read_mesh(folder_ / "a.tab")).closed);
-  const auto made = figures(write("ball.json", ball_recipe("km", 1)) + " -o a.icq --resolution 32");
-  const TriangleMesh icq = read_mesh(folder_ / "a.icq");
-  EXPECT_TRUE(analyze_topology(icq).closed);
-  EXPECT_EQ(made["triangles"], icq.triangles.size());
-  EXPECT_EQ(made["vertices"], icq.vertices.size());
-  for (const std::string extension : {".tab", ".icq", ".obj"}) {
-    const std::string said =
-        succeed(write("m.json", ball_recipe("m", 1)) + " --resolution 16 -o m" + extension);
-    EXPECT_EQ(testing::has(said, "note: a " + extension + " states no unit; read it with --unit m\n"),
-              extension != ".obj")
-        << said;
-  }
-  write("apart.json", replaced(ball_recipe("km", 1), "]]", "], [9, 0, 0, 1]]"));
-  refuse("apart.json -o b.icq --resolution 32", "b.icq");
+// An eroded mesh is held in memory, with its edges and verticals, beside the tiles of impulses.
+TEST_F(SynthMemory, MemoryOfErosionIsPredicted) {
+  write("eroded.json",
+        two_spheres_with(gabor_layer(0.007, 32), R"(, "erosion": {"talus_angle": 30, "iterations": 5})"));
+  const std::string line = "eroded.json -o out.ply --resolution 20 --threads 1";
+  const double predicted = figures(line + " --predict").at("predicted").at("peak_bytes");
+  EXPECT_LE(figures(line).at("peak_bytes"), 1.2 * predicted);
 }
 
-TEST_F(Synth, EveryFormatHoldsTheSameMesh) {
-  synthesise("out.ply");
-  const TriangleMesh ply = read_mesh(folder_ / "out.ply");
-  for (const char* name : {"out.obj", "out.stl"}) {
-    synthesise(name);
-    EXPECT_EQ(read_mesh(folder_ / name).triangles.size(), ply.triangles.size()) << name;
-  }
-  EXPECT_EQ(synthesise("out.glb").substr(0, 4), "glTF");
-  EXPECT_NE(synthesise("uv.glb", "--uv").find("TEXCOORD_0"), std::string::npos);
-  EXPECT_EQ(unpack_zstd(synthesise("body.ply.zst"), 100'000'000), synthesise("body.ply"));
-}
-
-TEST_F(Synth, BytesDependOnTheSeedAndNotOnThreads) {
-  const std::string one = synthesise("one.ply", "--seed 5 --threads 1");
-  EXPECT_GT(one.size(), 10000u);
-  EXPECT_TRUE(one == synthesise("two.ply", "--seed 5 --threads 2"));
-  EXPECT_TRUE(one == synthesise("eight.ply", "--seed 5 --threads 8"));
-  EXPECT_FALSE(one == synthesise("other.ply", "--seed 6"));
-}
-
-TEST_F(Synth, SummaryHoldsTheFigures) {
-  synthesise("out.ply", "--summary s.json");
-  const auto summary = json("s.json");
-  for (const char* field : {"evaluations", "seconds", "peak_bytes"}) {
-    EXPECT_TRUE(summary.contains(field)) << field;
-  }
-  const TriangleMesh mesh = read_mesh(folder_ / "out.ply");
-  const MeshTopology topology = analyze_topology(mesh);
-  EXPECT_TRUE(topology.closed && topology.manifold && topology.components == 1);
-  EXPECT_EQ(summary["vertices"], mesh.vertices.size());
-  EXPECT_EQ(summary["triangles"], mesh.triangles.size());
-  EXPECT_EQ(summary["closed"], true);
-  EXPECT_EQ(summary["manifold"], true);
-  EXPECT_EQ(summary["genus"], topology.genus);
-  EXPECT_EQ(summary["sha256"], sha256_of_file(folder_ / "out.ply"));
-}
-
-// The whole mesh's file without its faces, but for the header.
-TEST_F(Synth, PointsAreTheVerticesAlone) {
-  const std::string mesh = synthesise("mesh.ply"), points = synthesise("points.ply", "--points");
-  const auto body = [](const std::string& file) { return file.substr(file.find("end_header\n")); };
-  EXPECT_NE(points.find("element face 0\n"), std::string::npos);
-  EXPECT_GT(body(points).size(), 10000u);
-  EXPECT_EQ(body(points), body(mesh).substr(0, body(points).size()));
-  refuse("r.json -o out.obj --points", ".ply");
-  refuse("r.json -o out.obj --uv", ".glb");
-}
-
-TEST_F(Synth, LabelsStandBesideTheNormals) {
-  const std::string bytes = synthesise("labels.ply", "--labels");
-  EXPECT_NE(bytes.find("comment label 0: the bare body\ncomment label 1: simplex\n"), std::string::npos);
-  EXPECT_NE(bytes.find("property float nz\nproperty int label\nproperty float elevation\n"),
-            std::string::npos);
-  synthesise("plain.ply");
-  const TriangleMesh labelled = read_mesh(folder_ / "labels.ply"), plain = read_mesh(folder_ / "plain.ply");
-  EXPECT_TRUE(labelled.vertices == plain.vertices && labelled.triangles == plain.triangles);
-  EXPECT_NE(synthesise("points.ply", "--labels --points").find("element face 0\n"), std::string::npos);
-  refuse("r.json -o out.obj --labels", ".ply");
-}
-
-TEST_F(Synth, SmallPiecesAreLeftOut) {
-  write("r.json", replaced(kTwoSpheres, "[1, 0, 0, 0.75]", "[1, 0, 0, 0.75], [2.6, 0, 0, 0.15]"));
-  const std::string line = "r.json -o x.ply --resolution 64";
-  EXPECT_EQ(figures(line).at("components"), 2);
-  EXPECT_EQ(figures(line + " --min-component 0.01").at("components"), 1);
-  EXPECT_EQ(analyze_topology(read_mesh(folder_ / "x.ply")).components, 1);
-}
-
-TEST_F(Synth, ErosionSettlesAndIsOfTheWhole) {
-  write("r.json", replaced(kTwoSpheres, "\"layers\"", "\"erosion\": {\"talus_angle\": 30}, \"layers\""));
-  const std::string line = "r.json -o x.ply --resolution 40";
-  const auto bytes = [&](const std::string& threads) {
-    succeed(line + " --summary s.json --threads " + threads);
-    return text("x.ply");
-  };
-  EXPECT_TRUE(bytes("1") == bytes("4"));
-  const auto summary = json("s.json");
-  EXPECT_TRUE(summary.at("closed"));
-  EXPECT_TRUE(summary.at("erosion").at("settled"));
-  EXPECT_LE(summary.at("erosion").at("steepest_after"), 30.0);
-  EXPECT_GT(summary.at("erosion").at("steepest_before"), 31.0);
-  refuse(line + " --tile 1/2", "--tile");
+// A block here needs tiles of 200 MB, many times what the cache keeps of them.
+TEST_F(SynthMemory, ThreadsHoldFewTilesOfImpulses) {
+  write("dense.json", two_spheres_with(gabor_layer(0.02, 400)));
+  EXPECT_LE(figures("dense.json -o out.ply --resolution 12 --threads 2").at("peak_bytes"), 120e6);
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 
 #include "numerics/errors.h"
 #include "tasks/description/compare.h"
 #include "tasks/description/describe.h"
 #include "tasks/gravity/gravity_job.h"
+#include "tasks/synth/synth.h"
 #include "tasks/synthesis/check_tiles.h"
 #include "tasks/synthesis/render.h"
 #include "tests/support/scratch_folder.h"
@@ -58,7 +60,7 @@ const std::map<std::string, Declaration>& declarations() {
   static const std::map<std::string, Declaration> all{
       {"compare", of(declare_compare)},       {"describe", of(declare_describe)},
       {"gravity", of(declare_gravity)},       {"check_tiles", of(declare_check_tiles)},
-      {"render", of(declare_render)},
+      {"render", of(declare_render)},         {"synth", of(declare_synth)},
 #ifdef ASTROLITH_WITH_ESTIMATION
       {"classify", of(declare_classify)},     {"fit_gabor", of(declare_photo_fit)},
       {"fit_shape", of(declare_fit_options)},
@@ -102,32 +104,33 @@ TEST_P(OptionFiles, NoPairOfOptionsMayShareAFileThatIsWritten) {
     }
     return false;
   };
+  // Whether the option can name the file; it then does. --density-of takes FILE=DENSITY.
+  const auto name_it = [](OptionRow& row, const fs::path& file) {
+    for (const std::string& words : {file.string(), file.string() + "=1"}) {
+      const std::vector<fs::path> named = (row.reads ? row.reads : row.writes)({words});
+      if (std::find(named.begin(), named.end(), file) == named.end()) continue;
+      row.words = {words};
+      return true;
+    }
+    return false;  // a folder, whose files have fixed names
+  };
   int pairs = 0;
   for (OptionRow* output : rows) {
     if (!output->writes) continue;
     const testing::ScratchFolder folder;
-    const std::string name = folder / "out.json";
-    for (const fs::path& file : output->writes({name})) {
-      for (OptionRow* other : rows) {
-        if (other == output || (!other->reads && !other->writes)) continue;
-        fs::remove_all(name);
-        fs::create_directories(file.parent_path());
-        std::ofstream(file) << "{}";
-        for (OptionRow* row : rows) row->words.clear();
-        output->words = {name};
-        // --density-of takes FILE=DENSITY.
-        const bool names_it = [&] {
-          for (const std::string& words : {file.string(), file.string() + "=1"}) {
-            const std::vector<fs::path> named = (other->reads ? other->reads : other->writes)({words});
-            if (std::find(named.begin(), named.end(), file) == named.end()) continue;
-            other->words = {words};
-            return true;
-          }
-          return false;  // a folder, whose files have fixed names
-        }();
-        if (!names_it) continue;
-        ++pairs;
-        EXPECT_TRUE(refused()) << output->names << " and " << other->names << ": " << file;
+    for (const std::string name : {folder / "out.json", folder / "out.tif"}) {
+      for (const fs::path& file : output->writes({name})) {
+        for (OptionRow* other : rows) {
+          if (other == output || (!other->reads && !other->writes)) continue;
+          fs::remove_all(name);
+          fs::create_directories(file.parent_path());
+          std::ofstream(file) << "{}";
+          for (OptionRow* row : rows) row->words.clear();
+          output->words = {name};
+          if (!name_it(*other, file)) continue;
+          ++pairs;
+          EXPECT_TRUE(refused()) << output->names << " and " << other->names << ": " << file;
+        }
       }
     }
   }

@@ -1,0 +1,278 @@
+#include "tasks/synth/synth.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/io/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "numerics/files/sha256.h"
+#include "synthesis/finish/lay_on_base.h"
+#include "tasks/job/density_question.h"
+#include "tasks/job/job.h"
+#include "tasks/job/output_names.h"
+#include "tasks/synth/synth_finish.h"
+#include "tasks/synth/synth_members.h"
+#include "tasks/synth/synth_mesh.h"
+#include "tasks/synth/synth_texture.h"
+#include "tasks/synthesis/load_recipe.h"
+#include "tasks/synthesis/variation_reference.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SynthOptions {
+  fs::path recipe;
+  fs::path base;
+  std::string base_lengths = "units";
+  BodyRequest body;  // its recipe is the one that is made
+  TextureRequest texture;
+  MembersRequest members;
+  FinishOptions finish;
+  bool like = false;  // whether reliefs are drawn anew
+  bool fill_unseen = false;
+  std::string count;  // of bodies, an option that --members replaces
+  int finer = 0;      // levels of reliefs below their models
+  double vary = 0.0;  // 0 = the recipe itself
+  fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
+};
+
+void declare_options(Job& job, SynthOptions& options) {
+  job.options.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
+      .required()
+      .reads(recipe_and_images);
+  job.options
+      .add_option(
+          "-o,--output", options.body.output,
+          "the mesh: " + written_mesh_words() +
+              ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
+              "--write-recipe is given")
+      .placeholder("FILE")
+      .writes([&options](const auto& words) {
+        return options.texture.size.empty() ? std::vector<fs::path>{words.front()}
+                                            : texture_files(options.texture, words.front());
+      });
+  declare_mesh_options(job, options.body.mesh);
+  job.options
+      .add_option("--base", options.base,
+                  "lay the recipe's layers on the body of this recipe, after the layers it has; a relief "
+                  "takes the place of that body's own")
+      .placeholder("BODY.json")
+      .reads(recipe_and_images);
+  job.options
+      .add_option("--base-lengths", options.base_lengths,
+                  "what keeps its size on the --base: units, the lengths themselves, where m and km convert "
+                  "and the unit \"body\" is the longest side of that body; body, the shares of the longest "
+                  "side; edges, the lengths in mean edges of the two measured models")
+      .needs(job.options.option("--base"))
+      .check(one_of({"units", "body", "edges"}))
+      .placeholder("WHAT");
+  declare_finish_options(job, options.finish);
+  job.options.add_flag("--like", options.like,
+                       "another body of the kind: the measured heights of the recipe's relief are drawn for "
+                       "other places, patch by patch; every --seed gives another one");
+  job.options.add_flag("--fill-unseen", options.fill_unseen,
+                       "ground that no camera saw, which the model has smooth, gets patches of the ground "
+                       "that was seen");
+  job.options
+      .add_option("--finer", options.finer,
+                  "continue the recipe's relief below the edges of the model that was measured, by this many "
+                  "levels of its own ground, each a quarter as large as the one before")
+      .check(in_range(0, kMostFinerLevels))
+      .placeholder("LEVELS")
+      .default_text("those of the recipe");
+  Option vary =
+      job.options
+          .add_option(
+              "--vary", options.vary,
+              "another body of the same kind: the strongest variation that --seed draws whose similarity "
+              "with the --target, or else with the recipe's own body, as `compare` measures it, is at "
+              "least 1 less this; with new noise, unless that alone is too different")
+          .check(in_range(1e-3, 1.0))
+          .default_text("");
+  job.options
+      .add_option("--target", options.target,
+                  "with --vary: the mesh that the body is to be like, such as the one that the recipe was "
+                  "fitted to")
+      .needs(vary)
+      .placeholder("MESH")
+      .reads();
+  job.options.add_option("--count", options.count, "gone; see --members").placeholder("N");
+  job.options
+      .add_option("--write-recipe", options.body.recipe,
+                  "also write the recipe that is made, with the layers of --base, the variation and the seed "
+                  "in it, as JSON or compact (.astro); without -o nothing else")
+      .placeholder("FILE.json")
+      .writes(recipe_and_relief);
+  declare_texture_options(job, options.texture);
+  declare_members_options(job, options.members);
+  // A texture has its own options; all others are of the mesh.
+  static constexpr const char* kOfTextures[] = {
+      "recipe",       "output",  "base",       "base-lengths", "seed", "threads", "quiet", "summary", "count",
+      "write-recipe", "texture", "texture-of", "tileable",     "bits", "members", "out",   "manifest"};
+  for (const auto& row : job.options.rows()) {
+    if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
+      job.options.option("--texture").excludes(job.options.option(row->name()));
+  }
+  for (const char* of_one : {"--texture", "--tile"}) {
+    job.options.option("--members").excludes(job.options.option(of_one));
+  }
+  job.options.option("--seed")
+      .description("replaces the recipe's seed when given; with --vary the number of the variation")
+      .default_text("");
+}
+
+void make_texture(Job& job, const SynthOptions& options, const Recipe& recipe) {
+  require_extension(options.body.output, {".png", ".tif", ".tiff"});
+  const std::vector<fs::path> files = texture_files(options.texture, options.body.output);
+  for (const fs::path& file : files) require_writable(file);
+  write_texture(job, options.texture, recipe, options.recipe, options.body.output);
+  summarize_output(job, files.front());
+}
+
+// Changes all reliefs; the words say what an option does with their heights, for a recipe without any.
+template <class Change>
+void change_reliefs(Recipe& recipe, const fs::path& file, std::string_view does, const Change& change) {
+  bool has_relief = false;
+  for (Layer& layer : recipe.layers) {
+    if (ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) change(*relief), has_relief = true;
+  }
+  if (has_relief) return;
+  throw InputError(
+      fmt::format("{}: layers: hold no relief, whose heights {}; fit_shape writes one", file.string(), does));
+}
+
+Recipe read_input(const Job& job, const SynthOptions& options) {
+  Recipe recipe = load_recipe(options.recipe);
+  if (!options.base.empty()) {
+    recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
+                         base_lengths_of(options.base_lengths));
+  }
+  if (options.like) {
+    change_reliefs(recipe, options.recipe, "--like draws for other places",
+                   [](ReliefLayer& relief) { relief.arrangement = ReliefArrangement::kLike; });
+  }
+  if (options.fill_unseen) {
+    change_reliefs(recipe, options.recipe, "--fill-unseen fills",
+                   [](ReliefLayer& relief) { relief.fill_unseen = true; });
+  }
+  if (job.options.option("--finer").count() > 0) {
+    change_reliefs(recipe, options.recipe, "--finer continues",
+                   [&](ReliefLayer& relief) { relief.finer = options.finer; });
+  }
+  if (job.options.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = job.seed;
+  return recipe;
+}
+
+// The mesh that variations are to be like.
+TriangleMesh target_of(const Job& job, const SynthOptions& options, const Recipe& recipe) {
+  const Provenance& origin = recipe.provenance;
+  if (options.target.empty()) return mesh_for_comparison(recipe);
+  if (!origin.input_sha256.empty() && sha256_of_file(options.target) != origin.input_sha256) {
+    job.say("note: " + options.target.string() + " is not the file that the recipe was fitted to, " +
+            origin.input_name);
+  }
+  return read_mesh(options.target);
+}
+
+Recipe varied(Job& job, const SynthOptions& options, const Recipe& recipe, std::uint64_t seed) {
+  const TriangleMesh target = target_of(job, options, recipe);
+  const SimilarityMeasure similarity =
+      target.triangles.empty() ? SimilarityMeasure() : similarity_with(target);
+  Variation variation = find_variation(recipe, similarity, options.vary, seed, job.progress("vary"));
+  const std::string whose = options.target.empty() ? "the recipe's own body" : options.target.string();
+  job.summary["similarity"] = variation.similarity;
+  job.summary["similarity_with"] = options.target.empty() ? "recipe" : "target";
+  job.summary["variation"] = figures_of(variation);
+  job.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", seed, variation.similarity, whose,
+                      words_of(variation)));
+  return std::move(variation.recipe);
+}
+
+// Refuses outputs that cannot be written before any work.
+void check_outputs(const Job& job, const SynthOptions& options) {
+  const bool single = options.members.range.empty();
+  if (!options.count.empty()) {
+    throw InputError(
+        "--count: is gone; write --members A:B, bodies A to B - 1, with {member} in the names of files");
+  }
+  check_finish(options.finish);
+  if (options.body.mesh.gravity.wanted())
+    question_density(job, options.body.mesh.gravity.density_and_period[0]);
+  check_members(options.members, options.body);
+  if (!options.body.recipe.empty()) {
+    require_extension(options.body.recipe, {".json", ".astro"});
+    if (single) require_writable(options.body.recipe);
+  }
+  if (options.texture.size.empty()) {
+    if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
+    if (single) check_mesh_outputs(job, options.body.mesh, options.body.output);
+  } else if (!options.body.output.empty()) {
+    require_extension(options.body.output, {".png", ".tif", ".tiff"});
+  }
+  if (!options.body.output.empty() || !options.body.recipe.empty() || options.body.mesh.size.only_predict)
+    return;
+  throw InputError("--output: is required; name the file to make, such as -o body.ply");
+}
+
+// Refuses members that would not differ as the options say.
+void check_members_of(const Job& job, const SynthOptions& options, const Recipe& recipe) {
+  const bool varied = options.vary > 0.0;
+  if (recipe.family && varied)
+    throw InputError("--vary: members of a family differ as the recipe says; leave out --vary or --members");
+  if (!recipe.family && job.options.option("--seed").count() > 0)
+    throw InputError(
+        "--seed: bodies of --members have their numbers as seeds, but for those of a family; leave "
+        "out --seed, and name other numbers");
+}
+
+void synthesize(Job& job, const SynthOptions& options) {
+  check_outputs(job, options);
+  const Recipe recipe = read_input(job, options);
+  job.summary["length_unit"] = recipe.length_unit;
+  if (!options.texture.size.empty()) return make_texture(job, options, recipe);
+  if (!recipe.body) {
+    throw InputError(options.recipe.string() +
+                     ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
+                     "with --texture WxH");
+  }
+  const fs::path& file = options.base.empty() ? options.recipe : options.base;
+  const BodyRequest& body = options.body;
+  const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
+  const auto variation = [&](std::uint64_t seed) {
+    return finished(job, options.finish, varied(job, options, recipe, seed), file.string(), patch_side);
+  };
+  const bool is_varied = options.vary > 0.0;
+  const Recipe whole = is_varied ? recipe : finished(job, options.finish, recipe, file.string(), patch_side);
+  if (!options.members.range.empty()) {
+    check_members_of(job, options, recipe);
+    const auto draw = [&](std::uint64_t number) {
+      return is_varied ? FamilyMember{variation(number), {}, {}, {}} : family_member(whole, number);
+    };
+    const auto work = body.mesh.size.only_predict ? predict_members : make_members;
+    return work(job, options.members, body, {whole, file, draw});
+  }
+  const Recipe made = is_varied ? variation(job.seed) : whole;
+  if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
+  if (body.output.empty() && !body.mesh.size.only_predict) return;
+  make_mesh(job, body.mesh, made, file, body.output);
+}
+
+}  // namespace
+JobWork declare_synth(Job& job) {
+  const auto options = std::make_shared<SynthOptions>();
+  declare_options(job, *options);
+  return [&job, options] {
+    if (!options->members.folder.empty()) options->body.output = options->members.folder / "{member}.ply";
+    synthesize(job, *options);
+  };
+}
+
+}  // namespace astrolith

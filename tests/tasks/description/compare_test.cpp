@@ -1,0 +1,111 @@
+// compare: similarity, distances and the verdict on two surfaces.
+#include "tasks/description/compare.h"
+
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::ellipsoid_obj;
+using testing::has;
+
+class Compare : public testing::JobTest {
+ protected:
+  Compare() : JobTest("compare", declare_compare) {
+    write("ball.obj", ellipsoid_obj(1, 1, 1, 47, 96));
+    write("bigger.obj", ellipsoid_obj(1.1, 1.1, 1.1, 47, 96));
+    write("long.obj", ellipsoid_obj(3, 1, 1, 47, 96));
+  }
+  nlohmann::json compare(const std::string& line) {
+    const testing::Outcome outcome = run(line + " --points 1000 --samples 5000");
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return nlohmann::json::parse(outcome.output);
+  }
+};
+
+TEST_F(Compare, SpheresOfTwoSizesAreAlikeAndApart) {
+  const auto same = compare("ball.obj bigger.obj --floor");
+  EXPECT_GT(same["similarity"], 0.9);
+  EXPECT_GT(same["similarity_floor"]["a"], 0.9);
+  EXPECT_GT(same["similarity_floor"]["b"], 0.9);
+  const double diagonal = same["in_units_of_the_files"]["diagonal_of_a"];
+  EXPECT_NEAR(diagonal, std::sqrt(12.0), 0.01);
+  for (const char* figure : {"mean", "p99", "max"}) {
+    EXPECT_NEAR(same[std::string(figure) + "_distance"].get<double>() * diagonal, 0.1, 0.003);
+    for (const char* way : {"both", "from_a_to_b", "from_b_to_a"})
+      EXPECT_NEAR(same["in_units_of_the_files"][way][figure], 0.1, 0.003);
+  }
+  const auto other = compare("ball.obj long.obj --threads 1");
+  EXPECT_EQ(other, compare("ball.obj long.obj --threads 2"));
+  EXPECT_LT(other["similarity"], 0.5);
+  EXPECT_FALSE(other.contains("similarity_floor"));
+  for (const char* distance : {"l2", "chi_square", "jensen_shannon", "earth_movers"})
+    EXPECT_GT(other[distance], 2 * same[distance].get<double>()) << distance;
+  EXPECT_NEAR(other["in_units_of_the_files"]["from_b_to_a"]["max"], 2, 0.02);
+}
+
+TEST_F(Compare, BringsBothToOneUnit) {
+  write("km.obj", "# length unit: km\n" + ellipsoid_obj(1, 1, 1, 47, 96));
+  write("m.obj", "# length unit: m\n" + ellipsoid_obj(1000, 1000, 1000, 47, 96));
+  const auto same = compare("km.obj m.obj");
+  EXPECT_EQ(same["length_unit"], "km");
+  EXPECT_LT(same["mean_distance"], 1e-6);
+  EXPECT_GT(compare("ball.obj m.obj")["mean_distance"], 1.0);
+  EXPECT_TRUE(has(succeed("km.obj m.obj --points 300 --samples 500 --realism --places 300"),
+                  "m.obj: from m to km, the unit of km.obj"));
+}
+
+TEST_F(Compare, ScalesNothingWhereAUnitIsUnknown) {
+  for (const std::string unit : {"m", "ft", "km"})
+    write(unit + ".obj", "# length unit: " + unit + "\n" + ellipsoid_obj(1, 1, 1, 47, 96));
+  for (const std::string other : {"m.obj", "km.obj"}) {
+    const std::string said = succeed("ft.obj " + other + " -o c.json --points 300 --samples 500");
+    EXPECT_TRUE(has(said, "note: " + other + ": is in "));
+    EXPECT_TRUE(has(said, ", and ft.obj in ft; nothing was scaled"));
+    EXPECT_EQ(json("c.json")["length_unit"], "ft");
+    EXPECT_LT(json("c.json")["mean_distance"], 1e-6);
+  }
+}
+
+TEST_F(Compare, WritesAFileAndASummary) {
+  auto summary = figures("ball.obj long.obj -o c.json --points 300 --samples 500");
+  EXPECT_TRUE(summary.at("seconds").is_number());
+  summary.erase("seconds");
+  EXPECT_EQ(summary, json("c.json"));
+}
+
+TEST_F(Compare, JudgesWhetherASurfacePassesAndSaysItInTenLines) {
+  const auto same =
+      compare("ball.obj bigger.obj --realism --json --places 1500 --unit km --floor")["realism"];
+  EXPECT_TRUE(same["passes"]) << same.dump();
+  EXPECT_EQ(same["words"][0], "passes");
+  EXPECT_GT(same["floor"]["p"], 0.05);
+  const auto without = compare("ball.obj bigger.obj --unit km");
+  EXPECT_FALSE(without.contains("realism"));
+  EXPECT_EQ(without["length_unit"], "km");
+
+  const std::string line = "ball.obj bigger.obj --realism --places 500 --points 1000 --samples 1000";
+  const testing::Outcome outcome = run(line + " -o c.json --quiet");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_LE(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 11) << outcome.output;
+  for (const char* part :
+       {"similarity", "surface: passes\n", "largest distance 0.", "relief over A's, by scale: "})
+    EXPECT_TRUE(has(outcome.output, part));
+  EXPECT_EQ(json("c.json")["realism"]["passes"], true);
+  EXPECT_EQ(run(line + " --json -o c.json").output, "");
+}
+
+TEST_F(Compare, BadFilesAreRefused) {
+  write("index.obj", testing::kTetrahedron + "f 1 2 5\n");
+  write("flat.obj", testing::kFlatObj);
+  refuse_all("", {{"ball.obj index.obj", "index.obj"},
+                  {"index.obj ball.obj", "index.obj"},
+                  {"ball.obj absent.ply", "absent.ply"},
+                  {"ball.obj flat.obj", "flat.obj"},
+                  {"ball.obj long.obj --samples 0", "--samples"}});
+}
+
+}  // namespace
+}  // namespace astrolith

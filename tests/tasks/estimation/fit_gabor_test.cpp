@@ -1,0 +1,199 @@
+// fit_gabor: a photo becomes a layer of a recipe.
+#include "tasks/estimation/fit_gabor.h"
+
+#include <sys/stat.h>
+
+#include <cmath>
+
+#include "numerics/files/sha256.h"
+#include "recipe/recipe_json.h"
+#include "tests/support/data.h"
+#include "tests/tasks/inputs.h"
+#include "tests/tasks/job_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::has;
+
+// rock.png is smooth noise.
+class FitGabor : public testing::JobTest {
+ protected:
+  FitGabor() : JobTest("fit_gabor", testing::job_of(declare_photo_fit, fit_gabor)) {
+    write("rock.png", testing::noise_png(64));
+  }
+
+  std::string fit(const std::string& output, const std::string& more = "") {
+    succeed("rock.png -o " + output + " " + more);
+    return text(output);
+  }
+  Recipe recipe() const { return read_recipe(folder_ / "rock.json"); }
+  void expect_image_refused(const std::string& name, const std::string& content) {
+    refuse(write(name, content) + " -o out.json", name);
+  }
+};
+
+TEST_F(FitGabor, WritesARecipeOfOneLayer) {
+  fit("rock.json");
+  EXPECT_FALSE(recipe().body.has_value());
+  ASSERT_EQ(recipe().layers.size(), 1u);
+  EXPECT_FALSE(std::get<GaborLayer>(recipe().layers[0]).lobes.empty());
+  EXPECT_EQ(recipe().provenance.input_name, "rock.png");
+  EXPECT_EQ(recipe().provenance.input_sha256, sha256_of_file(folder_ / "rock.png"));
+}
+
+// The exemplar's image lies beside the recipe, which names it; both have the same bytes for any threads.
+TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
+  const std::string line = "--model exemplar --height-rms 0.5 --threads ";
+  const std::string one = fit("rock.json", line + "1"), image = text("rock_exemplar.png");
+  ASSERT_EQ(recipe().layers.size(), 1u);
+  const ExemplarLayer layer = std::get<ExemplarLayer>(recipe().layers[0]);
+  EXPECT_EQ(layer.image, "rock_exemplar.png");
+  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
+  EXPECT_EQ(layer.height_rms, 0.5);
+  EXPECT_EQ(recipe().provenance.input_name, "rock.png");
+  EXPECT_EQ(fit("rock.json", line + "2").size(), one.size());
+  EXPECT_EQ(text("rock_exemplar.png"), image);
+}
+
+TEST_F(FitGabor, WritesRandomPhasesAsAnExemplar) {
+  fit("rock.json", "--model phase --channels pca --report report --summary s.json");
+  const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
+  EXPECT_TRUE(layer.color);
+  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
+  const auto summary = json("s.json");
+  EXPECT_EQ(summary["model"], "phase");
+  EXPECT_NEAR(summary["variance_ratio_synthesized"], 1.0, 0.3);
+  EXPECT_TRUE(summary.contains("gaussianity"));
+  EXPECT_TRUE(exists("report/report.png"));
+}
+
+// The layer, the report and the figures are those of the model that was taken.
+TEST_F(FitGabor, AutoComparesAllModelsOnUnseenSquares) {
+  const std::string said =
+      succeed("rock.png -o rock.json --model auto --summary s.json --report report --spectrum s.npy");
+  const auto summary = json("s.json");
+  const std::string taken = summary["model"];
+  EXPECT_TRUE(has(said, taken + " is taken"));
+  for (const char* model : {"gabor", "phase", "exemplar"}) {
+    EXPECT_TRUE(has(said, std::string(model) + " 0.")) << said;
+    EXPECT_GT(summary["choice"]["models"][model]["values"].get<double>(), 0.0);
+    EXPECT_GT(summary["choice"]["models"][model]["scatter"].get<double>(), 0.0);
+    EXPECT_TRUE(has(text("report/index.html"), model));
+  }
+  EXPECT_EQ(summary["choice"]["side"], 32);
+  EXPECT_EQ(std::holds_alternative<GaborLayer>(recipe().layers[0]), taken == "gabor");
+  EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
+}
+
+TEST_F(FitGabor, AutoSaysThatAPhotoChangesFromPlaceToPlace) {
+  constexpr int kSide = 96;
+  std::vector<std::uint8_t> grey;
+  for (int i = 0; i < kSide * kSide; ++i)
+    grey.push_back(static_cast<std::uint8_t>((i % kSide < kSide / 2 ? 40 : 160) + 7919 * i % 61));
+  write("halves.png", testing::png(kSide, kSide, grey));
+  const std::string crop = "crop it to a part that looks alike";
+  EXPECT_TRUE(has(succeed("halves.png -o halves.json --model auto"), crop));
+  EXPECT_FALSE(has(succeed("rock.png -o rock.json --model auto"), crop));
+}
+
+TEST_F(FitGabor, AnExemplarKeepsColoursAndHasItsReport) {
+  fit("rock.json", "--model exemplar --channels pca --height-rms 0.5 --report report --spectrum s.npy");
+  const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
+  EXPECT_TRUE(layer.color);
+  EXPECT_EQ(layer.height_rms, 0.5);
+  EXPECT_EQ(text("rock_exemplar.png")[25], '\2') << "colour type RGB";
+  EXPECT_TRUE(exists("report/report.svg"));
+  EXPECT_TRUE(has(text("report/index.html"), "The layer is the photo itself"));
+  EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
+}
+
+TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
+  write("flat.png", testing::png(64, 64, std::vector<std::uint8_t>(4096, 9)));
+  write("small.png", testing::noise_png(16));
+  write("out_exemplar.png", testing::noise_png(64));
+  for (const std::string model : {"exemplar", "phase"})
+    refuse_all("-o out.json --model " + model + " ", {{"flat.png", "one grey value"},
+                                                      {"small.png", "small.png"},
+                                                      {"small.png --channels pca", "small.png"},
+                                                      {"out_exemplar.png", "out_exemplar.png"}});
+}
+
+TEST_F(FitGabor, SameBytesForAnyThreadCount) {
+  EXPECT_EQ(fit("one.json", "--threads 1"), fit("two.json", "--threads 2"));
+}
+
+TEST_F(FitGabor, SummaryHoldsTheFigures) {
+  const auto summary = figures("rock.png -o rock.json");
+  for (const char* field :
+       {"lobes", "pursuit_gap", "pursuit_reached", "refinement_reached", "spectrum_distance",
+        "spectrum_residual", "weak_above", "weak", "band_overlap", "variance_in_spectrum",
+        "variance_ratio_synthesized", "gaussianity", "iterations", "seconds"}) {
+    ASSERT_TRUE(summary.contains(field)) << field;
+    EXPECT_FALSE(summary[field].is_null()) << field;  // NaN would become null
+  }
+  EXPECT_GE(summary["pursuit_gap"], 0.0);
+  EXPECT_FALSE(summary.contains("variance_ratio"));  // 1 by construction
+  EXPECT_FALSE(summary["weak"]);
+  double photo = 0.0;
+  for (const auto& band : summary["channels"][0]["bands"]) photo += band["photo"].get<double>();
+  EXPECT_NEAR(photo, 1.0, 1e-6);
+  EXPECT_NEAR(summary["variance_ratio_before_scaling"], 1.0, 0.1);
+}
+
+// One lobe is too few for the noise of the photo, and the program says what to do.
+TEST_F(FitGabor, AWeakFitIsCalledWeak) {
+  const auto photo = testing::package_file("gravel.png");
+  ASTROLITH_SKIP_WITHOUT(photo);
+  const std::string said = succeed(photo.string() + " -o gravel.json --lobes 1");
+  EXPECT_TRUE(has(said, "note: weak fit"));
+  EXPECT_TRUE(has(said, "--lobes"));
+}
+
+// The size in the header decides, and the message states the memory that the fit would take.
+TEST_F(FitGabor, BadImagesAreRefused) {
+  expect_image_refused("constant.png", testing::png(64, 64, std::vector<std::uint8_t>(64 * 64, 77)));
+  expect_image_refused("cut.png", text("rock.png").substr(0, text("rock.png").size() / 2));
+  refuse(write("huge.png", testing::png_header(20000, 20000)) + " -o out.json",
+         "huge.png: 20000 x 20000 pixels would take 7 GB");
+}
+
+// A grey picture through every way in: colours of one axis, a trend taken out, all outputs.
+TEST_F(FitGabor, EveryOutputIsWritten) {
+  fit("rock.json",
+      "--channels pca --detrend 2 --detrend-by division --spectrum s.npy --report report --summary s.json");
+  ASSERT_EQ(recipe().layers.size(), 1u);
+  const GaborLayer layer = std::get<GaborLayer>(recipe().layers[0]);
+  ASSERT_TRUE(layer.color.has_value());
+  EXPECT_NEAR(layer.color->axis.x, std::sqrt(1.0 / 3.0), 1e-6);
+  EXPECT_EQ(text("s.npy").substr(1, 5), "NUMPY");
+  EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
+  for (const std::string name : {"report.png", "report.svg", "exemplar.png", "synthesis.png",
+                                 "spectrum_exemplar.png", "spectrum_fitted.png"}) {
+    EXPECT_TRUE(exists("report/" + name)) << name;
+  }
+  EXPECT_EQ(json("s.json")["channels"].size(), 1u);
+}
+
+TEST_F(FitGabor, BadFilesAndOddOptionsAreRefused) {
+  std::filesystem::create_directory(folder_ / "folder");
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.png").c_str(), 0600), 0);
+  refuse_all("", {{"absent.png -o out.json", "absent.png"},
+                  {"folder -o out.json", "folder"},
+                  {"pipe.png -o out.json", "pipe.png"},
+                  {"rock.png -o absent/out.json", "out.json"},
+                  {"rock.png -o folder", "folder"}});
+  refuse_all("rock.png -o o.json ", {{"--channels rgb", "--channels"},
+                                     {"--detrend 7", "--detrend"},
+                                     {"--detrend-by hope", "--detrend-by"},
+                                     {"--lobes 0", "--lobes"},
+                                     {"--model phase --lobes 5", "--lobes"},
+                                     {"--penalty nan", "--penalty"},
+                                     {"--gap nan", "--gap"},
+                                     {"--height-rms nan", "--height-rms"},
+                                     {"--mm-per-px nan", "--mm-per-px"},
+                                     {"--max-memory 0.001", "rock.png"}});
+}
+
+}  // namespace
+}  // namespace astrolith
