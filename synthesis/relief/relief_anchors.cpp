@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -15,12 +16,11 @@ namespace {
 // The numbers of the places in an order that looks random.
 std::vector<std::uint32_t> hashed_order(std::size_t n) {
   constexpr std::uint32_t kOrder = 0x51ed270bu;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hashed(n);
+  for (std::uint32_t i = 0; i < n; ++i) hashed[i] = {hash_append(kOrder, i), i};
+  std::sort(hashed.begin(), hashed.end());
   std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [](std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t of_a = hash_append(kOrder, a), of_b = hash_append(kOrder, b);
-    return of_a != of_b ? of_a < of_b : a < b;
-  });
+  for (std::size_t k = 0; k < n; ++k) order[k] = hashed[k].second;
   return order;
 }
 
@@ -132,7 +132,8 @@ std::vector<std::uint32_t> relief_donors(const std::vector<ReliefAnchor>& anchor
   const double length = reach * to.diagonal();
   const std::vector<bool> possible = possible_donors(measured, fill);
   std::vector<std::uint32_t> donors(anchors.size());
-  for (std::uint32_t a = 0; a < anchors.size(); ++a) {
+  parallel_for(0, static_cast<std::int64_t>(anchors.size()), [&](std::int64_t number) {
+    const auto a = static_cast<std::uint32_t>(number);
     const Vec3d place = moved_along(anchors[a].at, from, to);
     const std::uint32_t own = nearest_to(place, measured);
     const bool any = fill && measured[own].unseen;
@@ -145,7 +146,7 @@ std::vector<std::uint32_t> relief_donors(const std::vector<ReliefAnchor>& anchor
       const double cost = any ? by_chance : kFar * beyond + unlike + by_chance;
       if (cost < least) least = cost, donors[a] = b;
     }
-  }
+  });
   return donors;
 }
 

@@ -104,18 +104,19 @@ std::array<double, 3> typical_rms(const ReliefPoints& points, ThreeFields bands,
   for (std::vector<double>& band : bands) {
     for (double& height : band) height *= height;
   }
-  const ThreeFields means = smoothed_fields(points, bands, kAround * edge);
+  const SampledMeans sampled = sampled_means(points, bands, kAround * edge);
   std::array<double, 3> rms{};
   for (std::size_t band = 0; band < bands.size(); ++band) {
     const double largest = *std::max_element(bands[band].begin(), bands[band].end());
     if (!(largest > 0.0)) continue;
-    const std::vector<double>& around = means[band];
+    const std::vector<double>& around = sampled.means[band];
     const double least = seen_alone ? ranked_value(around, around.size() * 3 / 4) / 49.0 : 0.0;
     double total = 0.0, logarithms = 0.0;
     for (std::size_t i = 0; i < around.size(); ++i) {
       if (around[i] < least) continue;
-      total += points.weight(i);
-      logarithms += points.weight(i) * portable::log(std::max(around[i] / largest, kLeast));
+      const double weight = points.weight(sampled.places[i]);
+      total += weight;
+      logarithms += weight * portable::log(std::max(around[i] / largest, kLeast));
     }
     rms[band] = std::sqrt(largest * portable::exp(logarithms / total));
   }

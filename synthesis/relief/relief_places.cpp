@@ -18,6 +18,7 @@ namespace {
 // The lattice is searched in blocks of cells. A block gathers its metaballs once.
 constexpr int kBlockNodes = 16;
 constexpr int kCellNodes = 4;  // spacings along the edge of a cell
+constexpr int kNodes = kBlockNodes + 1;
 
 // A box of blocks, and the metaballs that reach it.
 struct BlockBox {
@@ -56,22 +57,22 @@ class BlockOfNodes {
                const std::array<std::int64_t, 3>& low, int nodes, int stride)
       : ground_(ground), reaching_(reaching), spacing_(spacing), low_(low), nodes_(nodes), stride_(stride) {}
 
-  void evaluate(std::vector<float>& s) const {
-    const auto total = static_cast<std::size_t>(nodes_) * nodes_ * nodes_;
-    std::vector<float> x(total), y(total), z(total);
-    std::size_t number = 0;
-    for (int k = 0; k < nodes_; ++k) {
-      for (int j = 0; j < nodes_; ++j) {
-        for (int i = 0; i < nodes_; ++i, ++number) {
-          x[number] = static_cast<float>(at(0, i));
-          y[number] = static_cast<float>(at(1, j));
-          z[number] = static_cast<float>(at(2, k));
-        }
-      }
+  // The values at the nodes that are marked, x fastest; the others keep theirs.
+  void evaluate(const std::vector<char>& marked, std::vector<float>& s) const {
+    std::vector<float> x, y, z;
+    std::vector<std::size_t> numbers;
+    for (std::size_t number = 0; number < marked.size(); ++number) {
+      if (marked[number] == 0) continue;
+      const auto n = static_cast<std::size_t>(nodes_);
+      numbers.push_back(number);
+      x.push_back(static_cast<float>(at(0, static_cast<int>(number % n))));
+      y.push_back(static_cast<float>(at(1, static_cast<int>(number / n % n))));
+      z.push_back(static_cast<float>(at(2, static_cast<int>(number / (n * n)))));
     }
-    s.resize(total);
-    std::vector<float> gx(total), gy(total), gz(total);
-    evaluate(total, x, y, z, s, gx, gy, gz);
+    const std::size_t total = numbers.size();
+    std::vector<float> values(total), gx(total), gy(total), gz(total);
+    evaluate(total, x, y, z, values, gx, gy, gz);
+    for (std::size_t i = 0; i < total; ++i) s[numbers[i]] = values[i];
   }
   void evaluate(std::size_t n, const std::vector<float>& x, const std::vector<float>& y,
                 const std::vector<float>& z, std::vector<float>& s, std::vector<float>& gx,
@@ -134,7 +135,7 @@ class PlaceFinder {
     std::vector<std::vector<ReliefPlace>> found(boxes.size());
     parallel_for(0, static_cast<std::int64_t>(boxes.size()), [&](std::int64_t number) {
       const auto i = static_cast<std::size_t>(number);
-      if (may_cross(boxes[i])) found[i] = places_in(boxes[i]);
+      found[i] = places_in(boxes[i]);
     });
     return sorted(found);
   }
@@ -216,44 +217,54 @@ class PlaceFinder {
     return {block.low[0] * kBlockNodes, block.low[1] * kBlockNodes, block.low[2] * kBlockNodes};
   }
 
-  // Whether the surface may pass through any cell of a block.
-  bool may_cross(const BlockBox& block) const {
-    constexpr int kCorners = kBlockNodes / kCellNodes + 1;
-    std::vector<float> s;
-    BlockOfNodes(ground_, block.metaballs, spacing_, first_node(block), kCorners, kCellNodes).evaluate(s);
-    const auto corner = [&](int i, int j, int k) {
-      return s[static_cast<std::size_t>(i + kCorners * (j + kCorners * k))] / static_cast<float>(spacing_);
-    };
-    for (int k = 0; k + 1 < kCorners; ++k) {
-      for (int j = 0; j + 1 < kCorners; ++j) {
-        for (int i = 0; i + 1 < kCorners; ++i) {
-          std::array<float, 8> corners;
-          for (int c = 0; c < 8; ++c) {
-            corners[static_cast<std::size_t>(c)] = corner(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-          }
-          if (may_hold_surface(corners)) return true;
+  // Marks the nodes of the cells of a block through which the surface may pass. Returns whether there are
+  // any.
+  bool mark_nodes(const BlockBox& block, std::vector<char>& marked) const {
+    constexpr int kCells = kBlockNodes / kCellNodes, kCorners = kCells + 1;
+    std::vector<float> s(kCorners * kCorners * kCorners);
+    BlockOfNodes(ground_, block.metaballs, spacing_, first_node(block), kCorners, kCellNodes)
+        .evaluate(std::vector<char>(s.size(), 1), s);
+    bool any = false;
+    for (int cell = 0; cell < kCells * kCells * kCells; ++cell) {
+      const int i = cell % kCells, j = cell / kCells % kCells, k = cell / (kCells * kCells);
+      std::array<float, 8> corners;
+      for (int c = 0; c < 8; ++c) {
+        const int corner = i + (c & 1) + kCorners * (j + (c >> 1 & 1) + kCorners * (k + (c >> 2)));
+        corners[static_cast<std::size_t>(c)] =
+            s[static_cast<std::size_t>(corner)] / static_cast<float>(spacing_);
+      }
+      if (!may_hold_surface(corners)) continue;
+      any = true;
+      for (int w = kCellNodes * k; w <= kCellNodes * (k + 1); ++w) {
+        for (int v = kCellNodes * j; v <= kCellNodes * (j + 1); ++v) {
+          const auto first = static_cast<std::ptrdiff_t>(kCellNodes * i + kNodes * (v + kNodes * w));
+          std::fill_n(marked.begin() + first, kCellNodes + 1, char{1});
         }
       }
     }
-    return false;
+    return any;
   }
 
   // The places on edges of the lattice that begin in a block.
   std::vector<ReliefPlace> places_in(const BlockBox& of_one) const {
-    constexpr int kNodes = kBlockNodes + 1;
+    constexpr std::size_t kAll = std::size_t{kNodes} * kNodes * kNodes;
+    std::vector<char> marked(kAll, 0);
+    if (!mark_nodes(of_one, marked)) return {};
     const std::array<std::int64_t, 3> low = first_node(of_one);
     const BlockOfNodes block(ground_, of_one.metaballs, spacing_, low, kNodes, 1);
-    std::vector<float> s;
-    block.evaluate(s);
-    const std::array<std::size_t, 3> step{1, kNodes, kNodes * kNodes};
+    std::vector<float> s(kAll);
+    block.evaluate(marked, s);
+    constexpr std::array<std::size_t, 3> kStep{1, kNodes, kNodes * kNodes};
     std::vector<Crossing> crossings;
     for (int k = 0; k < kBlockNodes; ++k) {
       for (int j = 0; j < kBlockNodes; ++j) {
         for (int i = 0; i < kBlockNodes; ++i) {
           const std::size_t node = static_cast<std::size_t>(i + kNodes * (j + kNodes * k));
+          if (marked[node] == 0) continue;
           for (int a = 0; a < 3; ++a) {
-            const float here = s[node], next = s[node + step[static_cast<std::size_t>(a)]];
-            if ((here > 0.0f) == (next > 0.0f)) continue;
+            const std::size_t after = node + kStep[static_cast<std::size_t>(a)];
+            const float here = s[node], next = s[after];
+            if (marked[after] == 0 || (here > 0.0f) == (next > 0.0f)) continue;
             crossings.push_back({a, {i, j, k}, here / (here - next)});
           }
         }

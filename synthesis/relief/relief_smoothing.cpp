@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-constexpr int kPlacesAtOnce = 8;  // whose means are taken together
+constexpr int kPlacesAtOnce = 16;  // whose means are taken together
 constexpr int kMostFields = 3;
 
 Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
@@ -22,25 +22,25 @@ Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
   return {of[0], of[1], of[2]};
 }
 
-// Places in the order of their cells, and fields at them.
+// Places in the order of their cells, and fields at them. Floats have the digits that a mean of many needs.
 struct SortedPlaces {
-  std::vector<double> x, y, z, nx, ny, nz, weight;
-  std::array<std::vector<double>, kMostFields> fields;
+  std::vector<float> x, y, z, nx, ny, nz, weight;
+  std::array<std::vector<float>, kMostFields> fields;
 
   SortedPlaces(const ReliefPoints& points, std::span<const std::vector<double>> values) {
     const std::vector<std::uint32_t>& order = points.order();
-    for (std::vector<double>* column : {&x, &y, &z, &nx, &ny, &nz, &weight}) column->resize(order.size());
+    for (std::vector<float>* column : {&x, &y, &z, &nx, &ny, &nz, &weight}) column->resize(order.size());
     for (std::size_t f = 0; f < values.size(); ++f) fields[f].resize(order.size());
     parallel_for(
         0, static_cast<std::int64_t>(order.size()),
         [&](std::int64_t number) {
           const auto k = static_cast<std::size_t>(number);
           const std::uint32_t i = order[k];
-          const Vec3d &at = points.at(i), &normal = points.normal(i);
+          const Vec3f at = to_float(points.at(i)), normal = to_float(points.normal(i));
           x[k] = at.x, y[k] = at.y, z[k] = at.z;
           nx[k] = normal.x, ny[k] = normal.y, nz[k] = normal.z;
-          weight[k] = points.weight(i);
-          for (std::size_t f = 0; f < values.size(); ++f) fields[f][k] = values[f][i];
+          weight[k] = static_cast<float>(points.weight(i));
+          for (std::size_t f = 0; f < values.size(); ++f) fields[f][k] = static_cast<float>(values[f][i]);
         },
         4096);
   }
@@ -48,30 +48,30 @@ struct SortedPlaces {
 
 // A few places, and the sums around them.
 struct LaneSums {
-  double x[kPlacesAtOnce], y[kPlacesAtOnce], z[kPlacesAtOnce], nx[kPlacesAtOnce], ny[kPlacesAtOnce],
+  float x[kPlacesAtOnce], y[kPlacesAtOnce], z[kPlacesAtOnce], nx[kPlacesAtOnce], ny[kPlacesAtOnce],
       nz[kPlacesAtOnce];
-  double total[kPlacesAtOnce] = {}, sums[kMostFields][kPlacesAtOnce] = {};
+  float total[kPlacesAtOnce] = {}, sums[kMostFields][kPlacesAtOnce] = {};
 };
 
 // Adds the places `first` to `end` - 1 to the sums. A place beyond the radius, or that faces the other side,
 // adds exactly nothing.
 ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first, std::uint32_t end,
-                                      bool three_fields, double squared_radius, double inverse,
+                                      bool three_fields, float squared_radius, float inverse,
                                       LaneSums& lanes) {
   LaneSums l = lanes;  // so that the compiler keeps it in registers
-  const double* fields[kMostFields];
+  const float* fields[kMostFields];
   for (std::size_t f = 0; f < kMostFields; ++f) fields[f] = p.fields[three_fields ? f : 0].data();
   for (std::uint32_t k = first; k < end; ++k) {
-    const double x = p.x[k], y = p.y[k], z = p.z[k], nx = p.nx[k], ny = p.ny[k], nz = p.nz[k],
-                 of_place = p.weight[k], value0 = fields[0][k], value1 = fields[1][k], value2 = fields[2][k];
+    const float x = p.x[k], y = p.y[k], z = p.z[k], nx = p.nx[k], ny = p.ny[k], nz = p.nz[k],
+                of_place = p.weight[k], value0 = fields[0][k], value1 = fields[1][k], value2 = fields[2][k];
 #pragma omp simd
     for (int i = 0; i < kPlacesAtOnce; ++i) {
-      const double dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
-      const double squared = dx * dx + dy * dy + dz * dz;
-      const double facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
-      const double near = 1.0 - squared * inverse, square = near * near;
-      const double any = square * square * facing * of_place;
-      const double within = squared < squared_radius ? any : 0.0, weight = facing > 0.0 ? within : 0.0;
+      const float dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
+      const float squared = dx * dx + dy * dy + dz * dz;
+      const float facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
+      const float near = 1.0f - squared * inverse, square = near * near;
+      const float any = square * square * facing * of_place;
+      const float within = squared < squared_radius ? any : 0.0f, weight = facing > 0.0f ? within : 0.0f;
       l.total[i] += weight;
       l.sums[0][i] += weight * value0;
       l.sums[1][i] += weight * value1;
@@ -81,9 +81,11 @@ ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first
   lanes = l;
 }
 
-// Means of the fields around each place.
-ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<double>> fields, double sigma) {
-  const double radius = std::sqrt(8.0) * sigma, inverse = 1.0 / (radius * radius);
+// Means of the fields around the places of every `stride`th cell, at their numbers; the others are 0.
+ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<double>> fields, double sigma,
+                     std::size_t stride) {
+  const double radius = std::sqrt(8.0) * sigma;
+  const auto squared_radius = static_cast<float>(radius * radius), inverse = 1.0f / squared_radius;
   const SortedPlaces sorted(points, fields);
   const std::vector<std::uint32_t>& order = points.order();
   ThreeFields means;
@@ -98,18 +100,20 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
       box.extend(points.at(order[k]));
     }
     points.for_each_row(box, radius, [&](std::uint32_t from, std::uint32_t end) {
-      add_places(sorted, from, end, fields.size() == kMostFields, radius * radius, inverse, lanes);
+      add_places(sorted, from, end, fields.size() == kMostFields, squared_radius, inverse, lanes);
     });
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t place = order[first + i];
-      for (std::size_t f = 0; f < fields.size(); ++f)
-        means[f][place] = lanes.total[i] > 0.0 ? lanes.sums[f][i] / lanes.total[i] : fields[f][place];
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        means[f][place] =
+            lanes.total[i] > 0.0f ? double{lanes.sums[f][i]} / double{lanes.total[i]} : fields[f][place];
+      }
     }
   };
   parallel_for(
-      0, static_cast<std::int64_t>(points.cells()),
-      [&](std::int64_t cell) {
-        const auto c = static_cast<std::size_t>(cell);
+      0, static_cast<std::int64_t>((points.cells() + stride - 1) / stride),
+      [&](std::int64_t number) {
+        const std::size_t c = static_cast<std::size_t>(number) * stride;
         const std::uint32_t end = points.first_of_cell(c + 1);
         for (std::uint32_t first = points.first_of_cell(c); first < end; first += kPlacesAtOnce)
           of_few(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
@@ -162,11 +166,23 @@ ReliefPoints::ReliefPoints(const std::vector<ReliefPlace>& places, double spacin
 
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma) {
-  return std::move(smoothed(points, {&heights, 1}, sigma)[0]);
+  return std::move(smoothed(points, {&heights, 1}, sigma, 1)[0]);
 }
 
-ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma) {
-  return smoothed(points, fields, sigma);
+SampledMeans sampled_means(const ReliefPoints& points, const ThreeFields& fields, double sigma) {
+  constexpr std::size_t kEnoughCells = 4096;
+  const std::size_t stride = std::max<std::size_t>(1, points.cells() / kEnoughCells);
+  const ThreeFields means = smoothed(points, fields, sigma, stride);
+  SampledMeans sampled;
+  for (std::size_t c = 0; c < points.cells(); c += stride) {
+    const auto first = points.order().begin() + points.first_of_cell(c),
+               end = points.order().begin() + points.first_of_cell(c + 1);
+    sampled.places.insert(sampled.places.end(), first, end);
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    for (const std::uint32_t place : sampled.places) sampled.means[f].push_back(means[f][place]);
+  }
+  return sampled;
 }
 
 }  // namespace astrolith

@@ -101,8 +101,13 @@ class ReliefPoints {
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma);
 
-// The means of three fields at once, which takes hardly longer than those of one.
+// The means of three fields at once, which takes hardly longer than those of one, around the places of cells
+// all over the body: all of them, or some thousand.
 using ThreeFields = std::array<std::vector<double>, 3>;
-ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma);
+struct SampledMeans {
+  std::vector<std::uint32_t> places;
+  ThreeFields means;  // around each of these
+};
+SampledMeans sampled_means(const ReliefPoints& points, const ThreeFields& fields, double sigma);
 
 }  // namespace astrolith

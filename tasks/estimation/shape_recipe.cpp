@@ -1,11 +1,13 @@
 #include "tasks/estimation/shape_recipe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "estimation/shape/details/detailed_check.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
@@ -78,7 +80,12 @@ nlohmann::ordered_json relief_json(const ReliefFit& relief) {
 
 void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options,
                     ShapeFitResult& fit) {
-  fit.check = check_recipe(target, recipe, options.check_resolution, options.check_samples, options.seed);
+  // A mesh with longer edges than the target's would lack what the heights hold of it.
+  constexpr double kMostCells = 2048.0;
+  const Vec3d extent = target.surface.bounds().extent();
+  const double cells = std::max({extent.x, extent.y, extent.z}) / mean_edge(target.surface);
+  const int resolution = std::max(options.check_resolution, static_cast<int>(std::min(cells, kMostCells)));
+  fit.check = check_recipe(target, recipe, resolution, options.check_samples, options.seed);
   const MeasuredSimilarity measured =
       measure_similarity(target.surface, fit.check.mesh, PairFeatures::ahd, kSimilarityPoints, options.seed);
   fit.similarity = measured.similarity;

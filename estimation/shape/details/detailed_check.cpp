@@ -2,7 +2,6 @@
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/shape_description.h"
-#include "geometry/mesh_measure.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
 
@@ -21,12 +20,7 @@ TriangleMesh mesh_in_target_frame(const TargetBody& target, const Recipe& recipe
 
 FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, int resolution, std::int64_t samples,
                       std::uint64_t seed) {
-  FitCheck check{mesh_in_target_frame(target, recipe, resolution), {}, {}, 0.0};
-  check.topology = analyze_topology(check.mesh);
-  check.distance =
-      surface_distance(target.surface, target.tree, check.mesh, SurfaceTree(check.mesh), samples, seed);
-  check.volume_ratio = volume(check.mesh) / target.volume;
-  return check;
+  return check_mesh(target, mesh_in_target_frame(target, recipe, resolution), samples, seed);
 }
 
 MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,

@@ -8,6 +8,15 @@
 
 namespace astrolith {
 
+FitCheck check_mesh(const TargetBody& target, TriangleMesh mesh, std::int64_t samples, std::uint64_t seed) {
+  FitCheck check{std::move(mesh), {}, {}, 0.0};
+  check.topology = analyze_topology(check.mesh);
+  check.distance =
+      surface_distance(target.surface, target.tree, check.mesh, SurfaceTree(check.mesh), samples, seed);
+  check.volume_ratio = volume(check.mesh) / target.volume;
+  return check;
+}
+
 FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resolution, std::int64_t samples,
                    std::uint64_t seed) {
   Recipe recipe;
@@ -15,12 +24,7 @@ FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resol
   const ImplicitField field(recipe);
   MeshCollector collector;
   mesh_field(field, field.bounds(), resolution, collector);
-  FitCheck check{std::move(collector.mesh), {}, {}, 0.0};
-  check.topology = analyze_topology(check.mesh);
-  check.distance =
-      surface_distance(target.surface, target.tree, check.mesh, SurfaceTree(check.mesh), samples, seed);
-  check.volume_ratio = volume(check.mesh) / target.volume;
-  return check;
+  return check_mesh(target, std::move(collector.mesh), samples, seed);
 }
 
 FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold, double turned) {

@@ -18,8 +18,11 @@ struct FitCheck {
   double volume_ratio = 0.0;       // the fitted body's volume over the target's
 };
 
-// Meshes the body with `resolution` cells along its longest side, and measures distances from `samples` fresh
-// points of each surface. The body is in the target's frame.
+// Measures a mesh of a fit, in the target's frame, from `samples` fresh points of each surface.
+FitCheck check_mesh(const TargetBody& target, TriangleMesh mesh, std::int64_t samples, std::uint64_t seed);
+
+// Meshes the body with `resolution` cells along its longest side, and measures it as above. The body is in
+// the target's frame.
 FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resolution, std::int64_t samples,
                    std::uint64_t seed);
 
