@@ -78,8 +78,8 @@ def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(worm, program, tmp_path):
     assert len(of_few.recipe.body.spheres) <= 12 < len(fit.recipe.body.spheres)
 
 
-def test_bytes_are_those_of_a_bare_body(worm, example):
-    for more, message in (({}, "^bytes: .* add base_only$"), ({"base_only": True, "micro": example("rubble_pile")}, "^bytes excludes micro")):
+def test_bytes_are_those_of_metaballs_and_heights(worm, example):
+    for more, message in (({"details": "thesis"}, "^bytes: .* add base_only or details relief$"), ({"base_only": True, "micro": example("rubble_pile")}, "^bytes excludes micro")):
         with pytest.raises(ValueError, match=message):
             astrolith.fit_shape(worm, bytes=150, **more)
     with pytest.raises(ValueError, match="^bytes: must be a number between 100"):

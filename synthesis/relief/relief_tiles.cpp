@@ -257,7 +257,7 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis), au = (a + 1) % 3, av = (a + 2) % 3;
     const Lines lines(places, axis);
-    std::vector<std::int64_t> keys;  // of the cells with a place, along u, v, w
+    std::vector<char> has_place(static_cast<std::size_t>(cells), 0);
     for (const ReliefPlace& p : places) {
       if (p.axis != axis) continue;
       const CellsOfLine u(p.u), v(p.v);
@@ -267,13 +267,16 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
           for (std::int32_t cw = cell_of(w - 1); cw <= cell_of(w + 2); ++cw) {
             std::array<std::int64_t, 3> cell;
             cell[a] = cw - made.low[a], cell[au] = cu - made.low[au], cell[av] = cv - made.low[av];
-            keys.push_back(cell[0] + made.count[0] * (cell[1] + made.count[1] * cell[2]));
+            has_place[static_cast<std::size_t>(cell[0] +
+                                               made.count[0] * (cell[1] + made.count[1] * cell[2]))] = 1;
           }
         }
       }
     }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<std::int64_t> keys;  // of the cells with a place
+    for (std::size_t i = 0; i < has_place.size(); ++i) {
+      if (has_place[i] != 0) keys.push_back(static_cast<std::int64_t>(i));
+    }
     std::vector<FoundSheets> found(keys.size());
     parallel_for(0, static_cast<std::int64_t>(keys.size()), [&](std::int64_t i) {
       const std::int64_t key = keys[static_cast<std::size_t>(i)];

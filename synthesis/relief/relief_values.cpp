@@ -32,6 +32,9 @@ ReliefValues::ReliefValues(const ReliefPoints& points, const ReliefShares& share
       first_[i + 1] = rows.places.size();
     }
   });
+  std::size_t total = 0;
+  for (const Rows& rows : groups) total += rows.places.size();
+  places_.reserve(total), shares_.reserve(total);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::size_t before = places_.size();
     places_.insert(places_.end(), groups[g].places.begin(), groups[g].places.end());

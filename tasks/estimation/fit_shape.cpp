@@ -58,6 +58,7 @@ void keep_relief(Job& job, const FitArguments& arguments, const TargetBody& targ
       arguments.bytes > 0
           ? add_relief_within(target, static_cast<std::size_t>(arguments.bytes), progress, recipe)
           : add_relief(target, arguments.details.relief_spacing, progress, recipe);
+  if (relief.layer.pixels == nullptr) return;
   job.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
                       relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
   job.summary["relief"] = relief_json(relief);

@@ -62,6 +62,7 @@ class SizedReliefs {
           fit_relief(surface_, recipe_, {spacing, 0.0}, [&](double fraction, std::string_view words) {
             return report(progress_, done + fraction / kMostTries, words);
           });
+      if (fit.layer.pixels == nullptr) return best ? std::move(*best) : std::move(fit);
       const double size = size_of(fit);
       const bool fits = size <= room();
       if (!fits) refused = std::max(refused, spacing);
@@ -134,14 +135,14 @@ ReliefFit add_relief(const TargetBody& target, const std::string& words, const P
   const TriangleMesh surface = in_file_frame(target);
   const double spacing = relief_spacing_of(words, recipe.length_unit, mean_edge(surface));
   ReliefFit relief = fit_relief(surface, recipe, {spacing, 0.0}, progress);
-  recipe.layers.emplace_back(relief.layer);
+  if (relief.layer.pixels != nullptr) recipe.layers.emplace_back(relief.layer);
   return relief;
 }
 
 ReliefFit add_relief_within(const TargetBody& target, std::size_t bytes, const Progress& progress,
                             Recipe& recipe) {
   ReliefFit relief = SizedReliefs(target, bytes, progress, recipe).finest();
-  recipe.layers.emplace_back(relief.layer);
+  if (relief.layer.pixels != nullptr) recipe.layers.emplace_back(relief.layer);
   return relief;
 }
 

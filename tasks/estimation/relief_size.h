@@ -23,7 +23,8 @@ bool can_have_relief(const TargetBody& target);
 void expect_relief(const TargetBody& target);
 
 // Adds the heights of the target's surface over the recipe's body (in the file's frame) as a relief layer,
-// with the spacing of `words`. Throws as fit_relief().
+// with the spacing of `words`, unless the work was asked to stop before there were heights. Throws as
+// fit_relief().
 ReliefFit add_relief(const TargetBody& target, const std::string& words, const Progress& progress,
                      Recipe& recipe);
 

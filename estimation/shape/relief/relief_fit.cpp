@@ -106,12 +106,21 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
     throw InputError("relief.spacing: is below an eighth of the mean edge of the surface, which is " +
                      std::to_string(layer.edge) + "; make it larger");
   }
-  const ReliefSamples samples = relief_samples(surface, recipe, layer.spacing);
+  constexpr double kSamplesShare = 0.5;  // of the time
+  bool stopped = false;
+  const ReliefSamples samples =
+      relief_samples(surface, recipe, layer.spacing, [&](double fraction, std::string_view words) {
+        stopped = !report(progress, kSamplesShare * fraction, words);
+        return !stopped;
+      });
+  if (stopped) return fit;
   if (samples.places.empty() || samples.samples.empty()) {
     throw InputError("the body lies nowhere near the surface; fit its base first");
   }
   const ReliefBlend blend(samples);
-  std::vector<double> heights = solve_relief(blend, progress);
+  std::vector<double> heights = solve_relief(blend, [&](double fraction, std::string_view words) {
+    return report(progress, kSamplesShare + (1.0 - kSamplesShare) * fraction, words);
+  });
   const double step = options.step > 0.0 ? options.step : kDefaultStep * blend.mean_residual(heights);
   const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
   layer.pixels = picture_of(layer, samples.places, codes);

@@ -38,7 +38,8 @@ void expect_relief_facets(const TriangleMesh& surface);
 
 // Fits the heights of `surface` over the body of `recipe`; both are in the recipe's frame and unit. Throws
 // InputError for a surface of fewer than kFewestReliefFacets facets, a body with operations or a warp, and a
-// spacing too small for the body.
+// spacing too small for the body. The layer has no pixels where the work was asked to stop before there were
+// heights.
 ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const ReliefOptions& options = {},
                      const Progress& progress = {});
 

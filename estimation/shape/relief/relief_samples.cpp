@@ -134,7 +134,8 @@ std::vector<PlacedSample> sorted(std::vector<std::vector<PlacedSample>>& groups,
 
 }  // namespace
 
-ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, double spacing) {
+ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, double spacing,
+                             const Progress& progress) {
   ArrayStore arrays;
   const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
@@ -152,12 +153,19 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
   const SampleFinder finder(ground, made, spacing);
   std::vector<std::vector<PlacedSample>> groups(points.count());
   std::vector<std::size_t> asked(groups.size());
-  parallel_for(0, static_cast<std::int64_t>(groups.size()), [&](std::int64_t number) {
-    const auto g = static_cast<std::size_t>(number);
-    const std::vector<Vec3d> of_group = points.group(g);
-    groups[g] = finder.samples_of(of_group);
-    asked[g] = of_group.size() - groups[g].size();
-  });
+  constexpr std::size_t kTogether = 256;  // groups between two reports
+  for (std::size_t first = 0; first < groups.size(); first += kTogether) {
+    if (!report(progress, static_cast<double>(first) / static_cast<double>(groups.size()), "samples"))
+      return {};
+    parallel_for(static_cast<std::int64_t>(first),
+                 static_cast<std::int64_t>(std::min(first + kTogether, groups.size())),
+                 [&](std::int64_t number) {
+                   const auto g = static_cast<std::size_t>(number);
+                   const std::vector<Vec3d> of_group = points.group(g);
+                   groups[g] = finder.samples_of(of_group);
+                   asked[g] = of_group.size() - groups[g].size();
+                 });
+  }
   for (const std::size_t of_group : asked) made.left_out += of_group;
 
   const std::vector<PlacedSample> placed = sorted(groups, made.tiles.tiles.size() / 3);
