@@ -61,13 +61,17 @@ class BlockOfNodes {
   void evaluate(const std::vector<char>& marked, std::vector<float>& s) const {
     std::vector<float> x, y, z;
     std::vector<std::size_t> numbers;
-    for (std::size_t number = 0; number < marked.size(); ++number) {
-      if (marked[number] == 0) continue;
-      const auto n = static_cast<std::size_t>(nodes_);
-      numbers.push_back(number);
-      x.push_back(static_cast<float>(at(0, static_cast<int>(number % n))));
-      y.push_back(static_cast<float>(at(1, static_cast<int>(number / n % n))));
-      z.push_back(static_cast<float>(at(2, static_cast<int>(number / (n * n)))));
+    std::size_t number = 0;
+    for (int k = 0; k < nodes_; ++k) {
+      for (int j = 0; j < nodes_; ++j) {
+        for (int i = 0; i < nodes_; ++i, ++number) {
+          if (marked[number] == 0) continue;
+          numbers.push_back(number);
+          x.push_back(static_cast<float>(at(0, i)));
+          y.push_back(static_cast<float>(at(1, j)));
+          z.push_back(static_cast<float>(at(2, k)));
+        }
+      }
     }
     const std::size_t total = numbers.size();
     std::vector<float> values(total), gx(total), gy(total), gz(total);

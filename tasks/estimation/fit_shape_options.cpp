@@ -43,7 +43,7 @@ void declare_base_options(OptionTable& app, FitArguments& arguments) {
          "the most bytes of the result as a compact recipe (RECIPE.astro), for the least error: the numbers "
          "of the metaballs are rounded, and heights are as many as fit. Without --spheres the number of "
          "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
-      .check(in_range(100, 1000000))
+      .check(in_range(100, 10000000))
       .default_text("");
   app.add_option(
          "--subtract", arguments.fit.subtract,
