@@ -69,10 +69,15 @@ void write_distance_map(const TargetBody& target, const ShapeFitResult& fit,
       {"0", percent(fit.check.distance.p99)}, file);
 }
 
-TurnableSurface colored_surface(const std::string& caption, const TriangleMesh& mesh,
-                                const SurfaceTree& other, double largest) {
-  TurnableSurface surface{caption, mesh, {}};
-  if (mesh.vertices.size() > kMostPageVertices) surface.mesh = decimated(mesh, kMostPageVertices);
+TriangleMesh for_page(const TriangleMesh& mesh) {
+  constexpr std::size_t kManyTimes = 4;  // more vertices than these would take minutes
+  if (mesh.vertices.size() <= kMostPageVertices) return mesh;
+  return decimated(clustered(mesh, kManyTimes * kMostPageVertices), kMostPageVertices);
+}
+
+TurnableSurface colored_surface(const std::string& caption, TriangleMesh mesh, const SurfaceTree& other,
+                                double largest) {
+  TurnableSurface surface{caption, std::move(mesh), {}};
   for (const Vec3<float>& c : sequential_colors(vertex_distances(other, surface.mesh), 0.0, largest)) {
     surface.rgb.insert(surface.rgb.end(), {srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
   }
@@ -80,29 +85,26 @@ TurnableSurface colored_surface(const std::string& caption, const TriangleMesh& 
 }
 
 // Target and fit, each coloured by its distance from the other.
-TurnableSurfaces target_beside_fit(const TargetBody& target, const ShapeFitResult& fit) {
+TurnableSurfaces target_beside_fit(const TargetBody& target, const TriangleMesh& target_of_page,
+                                   const ShapeFitResult& fit) {
   const double largest = std::max(fit.check.distance.p99, 1e-9);
-  return {colored_surface("target", target.mesh, SurfaceTree(fit.check.mesh), largest),
-          colored_surface("fit", fit.check.mesh, target.tree, largest),
+  return {colored_surface("target", target_of_page, SurfaceTree(fit.check.mesh), largest),
+          colored_surface("fit", for_page(fit.check.mesh), target.tree, largest),
           "the distance from the other body, of the bounding-box diagonal", "0", percent(largest)};
 }
 
-TurnableSurface grey_surface(const std::string& caption, TriangleMesh mesh) {
-  if (mesh.vertices.size() > kMostPageVertices) mesh = decimated(mesh, kMostPageVertices);
-  return {caption, std::move(mesh), {}};
-}
-
-TurnableSurfaces target_beside_likeness(const TargetBody& target, TriangleMesh likeness) {
+TurnableSurfaces target_beside_likeness(const TargetBody& target, const TriangleMesh& target_of_page,
+                                        TriangleMesh likeness) {
   for (Vec3d& p : likeness.vertices) p = (1.0 / target.diagonal) * (p - target.center);
-  return {grey_surface("target", target.mesh), grey_surface("another body of its kind", std::move(likeness)),
-          "", "", ""};
+  return {{"target", target_of_page, {}}, {"another body of its kind", for_page(likeness), {}}, "", "", ""};
 }
 
 // The pairs to turn, but for bodies of very many small parts, which cannot be decimated for a page.
 std::vector<TurnableSurfaces> surface_pairs(const TargetBody& target, const ShapeFitResult& fit,
                                             const TriangleMesh* likeness) {
-  std::vector<TurnableSurfaces> pairs{target_beside_fit(target, fit)};
-  if (likeness != nullptr) pairs.push_back(target_beside_likeness(target, *likeness));
+  const TriangleMesh target_of_page = for_page(target.mesh);
+  std::vector<TurnableSurfaces> pairs{target_beside_fit(target, target_of_page, fit)};
+  if (likeness != nullptr) pairs.push_back(target_beside_likeness(target, target_of_page, *likeness));
   std::erase_if(pairs, [](const TurnableSurfaces& pair) {
     return std::max(pair.left.mesh.vertices.size(), pair.right.mesh.vertices.size()) > kMostPageVertices;
   });

@@ -154,6 +154,15 @@ TEST(DecimatedMesh, LeavesASmallMeshAlone) {
   EXPECT_EQ(decimated(sphere, 1000).triangles.size(), sphere.triangles.size());
 }
 
+TEST(ClusteredMesh, HasAboutTheVerticesThatAreAskedFor) {
+  const TriangleMesh sphere = testing::icosphere(6);
+  const TriangleMesh fewer = clustered(sphere, 2000);
+  EXPECT_NEAR(static_cast<double>(fewer.vertices.size()), 2000.0, 700.0);
+  EXPECT_NEAR(static_cast<double>(fewer.triangles.size()), 4000.0, 1400.0);
+  for (const Vec3d& p : fewer.vertices) EXPECT_NEAR(norm(p), 1.0, 5e-3);
+  EXPECT_EQ(clustered(fewer, 5000).triangles, fewer.triangles);
+}
+
 // A grid of n x n quadrilaterals over [-1, 1]^2 with heights f, seen along `up`.
 template <typename Height>
 TriangleMesh terrain(int n, const Vec3d& right, const Vec3d& ahead, const Vec3d& center, const Height& f) {
