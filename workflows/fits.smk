@@ -21,8 +21,11 @@ PROGRAM = str(config.get("program", "fit_shape"))
 OPTIONS = str(config.get("options", ""))
 # The extensions of the meshes that the program reads, as its help names them.
 HELP = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
-FORMATS = set(re.findall(r"\.\w+", re.search(r"mesh of a closed body \((.*?)\)", HELP)[1]))
-FILES = {file: pathlib.PurePath(file.name.removesuffix(".zst")) for file in sorted(pathlib.Path(config["models"]).iterdir())}
+NAMED = re.search(r"mesh of a closed body \((.*?)\)", HELP)
+if NAMED is None:
+    raise WorkflowError(f"{PROGRAM} --help: names no meshes; is it fit_shape?")
+FORMATS = {*re.findall(r"\.\w+", NAMED[1]), ".plt"}  # as PDS names some of its .tab
+FILES = {file: pathlib.PurePath(re.sub(r"\.ply\.zst$", ".ply", file.name)) for file in sorted(pathlib.Path(config["models"]).iterdir())}
 MODELS = {name.stem: str(file) for file, name in FILES.items() if name.suffix in FORMATS}
 if not MODELS:
     raise WorkflowError(f"{config['models']}: holds no shape model ({' '.join(sorted(FORMATS))})")

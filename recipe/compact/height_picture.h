@@ -18,7 +18,7 @@ struct HeightPicture {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-// A picture of more than 2^20 pixels is written as four bands of rows that know nothing of one another.
+// A picture of more than 2^20 pixels is written as eight bands of rows that know nothing of one another.
 void encode(const HeightPicture& picture, RangeEncoder& encoder);
 
 // Throws DamagedStream, also for a picture of more than `most_pixels`. Memory grows with the rows that have

@@ -58,13 +58,16 @@ void keep_relief(Job& job, const FitArguments& arguments, const TargetBody& targ
       arguments.bytes > 0
           ? add_relief_within(target, static_cast<std::size_t>(arguments.bytes), progress, recipe)
           : add_relief(target, arguments.details.relief_spacing, progress, recipe);
-  if (relief.layer.pixels == nullptr) return;
+  if (relief.layer.pixels == nullptr) {
+    job.say("no relief: the fit was stopped before it had heights");
+    job.summary["relief"] = {{"remark", "stopped before it had heights"}};
+    return;
+  }
   job.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
                       relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
   job.summary["relief"] = relief_json(relief);
 } catch (const InputError& e) {
-  if (!arguments.details.relief_spacing.empty())
-    throw InputError("--relief-spacing: " + std::string(e.what()));
+  if (arguments.details.gives_spacing()) throw InputError("--relief-spacing: " + std::string(e.what()));
   if (!arguments.details.chosen_by_job()) throw;
   job.say(std::string("no relief: ") + e.what());
   job.summary["relief"] = {{"remark", e.what()}};
@@ -288,7 +291,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     result.packing = packing_of(job, arguments, target);
     return result;
   }
-  if (arguments.details.keeps_relief() && !arguments.details.chosen_by_job()) expect_relief(target);
+  check_relief(target, arguments);
   settle_metaballs(job, target, arguments);
 
   FitCheckpoint checkpoint(arguments.checkpoint,

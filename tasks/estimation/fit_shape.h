@@ -45,6 +45,9 @@ FittedShape fit_shape(Job& job, FitArguments& arguments);
 // Turns the words of the options into the fit's settings, and sets its seed.
 void settle_fit_options(const Job& job, FitArguments& arguments);
 
+// Throws InputError for a relief that was asked for and that the target, whatever its metaballs, cannot have.
+void check_relief(const TargetBody& target, const FitArguments& arguments);
+
 // Sets the number of the metaballs and their bytes, which the details of this target leave to them.
 void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments);
 

@@ -21,8 +21,8 @@ void declare_micro_options(Job& job, DetailArguments& arguments) {
       job.options
           .add_option(
               "--micro", arguments.micro,
-              "the finest detail: the Gabor layers of this recipe of fit_gabor; or auto: instead of the "
-              "search, a Gabor layer learnt from what the metaballs leave of the mesh, down to the edges of "
+              "the finest detail: the Gabor layers of this recipe of fit_gabor; or auto: instead of a "
+              "relief, a Gabor layer learnt from what the metaballs leave of the mesh, down to the edges of "
               "50,000 triangles where it has more")
           .placeholder("ROCK.json|auto")
           .reads(recipe_and_images);
@@ -69,8 +69,8 @@ void declare_detail_options(Job& job, DetailArguments& arguments) {
   job.options
       .add_option(
           "--relief-spacing", arguments.relief_spacing,
-          "of the heights of a relief, in the mesh's unit, or with a unit of its own: m, km, or edges, "
-          "the mean edges of the mesh; larger ones make smaller recipes. auto: as fine as the mesh")
+          "of the heights of a relief, in the mesh's unit, or with a unit behind the number: m, km, or "
+          "edges, the mean edges of the mesh; larger ones make smaller recipes. auto: as fine as the mesh")
       .check(relief_spacing_words())
       .placeholder("L[m|km|edges]|auto")
       .default_text("auto")
@@ -99,7 +99,7 @@ void check_detail_inputs(const Job& job, const DetailArguments& arguments) {
   if (job.options.option("--generations").count() > 0 && !arguments.searches()) {
     throw InputError("--generations: are those of --details thesis; give that too, or leave them out");
   }
-  if (!arguments.relief_spacing.empty() && !arguments.keeps_relief())
+  if (arguments.gives_spacing() && !arguments.makes_relief())
     throw InputError("--relief-spacing: is about --details relief; give that, or leave it out");
   Recipe unused;
   if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;

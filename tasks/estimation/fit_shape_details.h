@@ -28,6 +28,10 @@ struct DetailArguments {
   // Whether heights are kept where the model allows them, and the metaballs alone elsewhere.
   bool chosen_by_job() const { return details == "auto"; }
   bool keeps_relief() const { return details == "relief" || chosen_by_job(); }
+  // Whether the recipe gets heights, where the model allows them.
+  bool makes_relief() const { return keeps_relief() && !base_only && micro != "auto"; }
+  // Whether a spacing of heights was asked for.
+  bool gives_spacing() const { return !relief_spacing.empty() && relief_spacing != "auto"; }
   bool searches() const { return details == "thesis"; }
   // Whether the layers of another recipe are taken.
   bool transfers() const { return !details.empty() && !keeps_relief() && !searches(); }

@@ -1,9 +1,12 @@
 #include "tasks/estimation/fit_shape.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_format.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "tasks/estimation/relief_size.h"
 #include "tasks/job/density_question.h"
@@ -15,6 +18,9 @@ namespace {
 
 // More of them bring the heights hardly nearer, and make a likeness of them rougher underneath.
 constexpr int kMetaballsUnderRelief = 80;
+// With fewer bytes metaballs alone come nearer (docs/accuracy.md#relief).
+constexpr int kFewestBytesOfRelief = 4000;
+constexpr double kFewestSpacings = 8.0;  // of heights along the diagonal of a body
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(OptionTable& app, FitArguments& arguments) {
@@ -37,12 +43,13 @@ void declare_base_options(OptionTable& app, FitArguments& arguments) {
       });
   app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs")
       .check(in_range(1, 10000))
-      .default_text("80 under a relief, else 200");
+      .default_text("80 under a relief, else 200, or as --bytes allow");
   app.add_option(
          "--bytes", arguments.bytes,
          "the most bytes of the result as a compact recipe (RECIPE.astro), for the least error: the numbers "
          "of the metaballs are rounded, and heights are as many as fit. Without --spheres the number of "
-         "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
+         "metaballs follows from the bytes, some 4 each, and there are no heights below 4,000 bytes unless "
+         "--details relief asks for them. The recipe has no provenance then")
       .check(in_range(100, 10000000))
       .default_text("");
   app.add_option(
@@ -136,17 +143,31 @@ void settle_fit_options(const Job& job, FitArguments& arguments) {
   arguments.fit.length_unit = arguments.unit;
   if (arguments.bytes > 0 && !arguments.details.base_only && !arguments.details.keeps_relief()) {
     throw InputError(
-        "--bytes: counts those of metaballs and heights, to which other details would add; add --base-only "
-        "or "
-        "--details relief");
+        "--bytes: counts those of metaballs and heights, to which other details would add; add "
+        "--base-only or --details relief");
   }
   question_density(job, arguments.density);
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
 }
 
-void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments) {
+void check_relief(const TargetBody& target, const FitArguments& arguments) {
   const DetailArguments& details = arguments.details;
-  const bool relief = !details.base_only && details.keeps_relief() && can_have_relief(target);
+  if (!details.makes_relief()) return;
+  if (!details.chosen_by_job() || details.gives_spacing()) expect_relief(target);
+  if (!details.gives_spacing()) return;
+  const double edge = target.diagonal * mean_edge(target.surface), least = edge / kMostReliefEdge;
+  const double most = target.diagonal * norm(target.surface.bounds().extent()) / kFewestSpacings;
+  const double spacing = relief_spacing_of(details.relief_spacing, arguments.unit, edge);
+  if (spacing >= least && spacing <= most) return;
+  throw InputError(fmt::format("--relief-spacing: is {:.4g} {}, and this model bears {:.4g} to {:.4g}",
+                               spacing, arguments.unit, least, most));
+}
+
+void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments) {
+  DetailArguments& details = arguments.details;
+  if (details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesOfRelief)
+    details.base_only = true;
+  const bool relief = details.makes_relief() && can_have_relief(target);
   ShapeFitOptions& fit = arguments.fit;
   fit.bytes = arguments.bytes;
   if (job.options.option("--spheres").count() == 0) {

@@ -50,25 +50,21 @@ class SizedReliefs {
         progress_(progress),
         recipe_(recipe) {}
 
-  // Halves the distance to the bytes from try to try: they grow about as the number of heights does.
+  // From try to try the spacing follows from the bytes, which grow about as the number of heights does.
   ReliefFit finest() {
     const double least = least_relief_spacing(surface_);
     double spacing = std::max(least, std::sqrt(surface_area(surface_) * kBytesOfHeight / room()));
     std::optional<ReliefFit> best;
     double refused = 0.0;  // the largest spacing that takes too many bytes
     for (int i = 0; i < kMostTries; ++i) {
-      const double done = static_cast<double>(i) / kMostTries;
-      ReliefFit fit =
-          fit_relief(surface_, recipe_, {spacing, 0.0}, [&](double fraction, std::string_view words) {
-            return report(progress_, done + fraction / kMostTries, words);
-          });
-      if (fit.layer.pixels == nullptr) return best ? std::move(*best) : std::move(fit);
+      ReliefFit fit = fitted(spacing, i);
+      // The heights of a try that was stopped are not solved.
+      if (stopped_) return best ? std::move(*best) : ReliefFit{};
       const double size = size_of(fit);
       const bool fits = size <= room();
       if (!fits) refused = std::max(refused, spacing);
       if (fits && (!best || spacing < best->layer.spacing)) best = std::move(fit);
       if (fits && (size > kFull * room() || spacing <= least)) break;
-      if (!report(progress_, done + 1.0 / kMostTries, "relief")) break;
       double next = std::max(least, spacing * std::sqrt(size / (kAim * room())));
       if (next <= refused) next = best ? std::sqrt(refused * best->layer.spacing) : 1.1 * refused;
       spacing = next;
@@ -83,6 +79,12 @@ class SizedReliefs {
   static constexpr double kFull = 0.97, kAim = 0.985;  // of the bytes
   static constexpr std::size_t kFewestHeights = 100;   // fewer tell nothing of a surface
 
+  ReliefFit fitted(double spacing, int number) {
+    return fit_relief(surface_, recipe_, {spacing, 0.0}, [&](double fraction, std::string_view words) {
+      stopped_ = stopped_ || !report(progress_, (number + fraction) / kMostTries, words);
+      return !stopped_;
+    });
+  }
   double room() const {
     if (bytes_ <= bare_ + kFewestHeights / 2) refuse();
     return static_cast<double>(bytes_ - bare_);
@@ -95,15 +97,16 @@ class SizedReliefs {
   }
   [[noreturn]] void refuse() const {
     throw InputError(fmt::format(
-        "bytes: the metaballs take {} of {} and leave no room for heights; give more, fewer --spheres, or "
-        "--base-only",
-        bare_, bytes_));
+        "bytes: the metaballs take {} of {}, and the others hold fewer than {} heights; give more, fewer "
+        "--spheres, or --base-only",
+        bare_, bytes_, kFewestHeights));
   }
 
   TriangleMesh surface_;
   std::size_t bytes_, bare_;
   const Progress& progress_;
   const Recipe& recipe_;
+  bool stopped_ = false;
 };
 
 }  // namespace
@@ -111,7 +114,7 @@ class SizedReliefs {
 ValueRule relief_spacing_words() {
   const auto complaint = [](const std::string& words) {
     if (words == "auto" || length_in(words)) return std::string();
-    return "must be auto or a length above 0, such as 2.5, 3m, 0.01km or 2edges, is " + words;
+    return "must be auto or a length above 0, such as 2.5, 3m, 0.01km or 2edges, is \"" + words + "\"";
   };
   return {complaint, ""};
 }

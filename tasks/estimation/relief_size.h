@@ -18,8 +18,9 @@ ValueRule relief_spacing_words();
 // Its length in `unit`, of a model with this mean edge; 0 for "auto". Expects words that the rule allows.
 double relief_spacing_of(const std::string& words, const std::string& unit, double mean_edge);
 
-// Whether the target has facets enough for heights; throws what add_relief() would throw where it has not.
+// Whether the target has facets enough for heights.
 bool can_have_relief(const TargetBody& target);
+// Throws what add_relief() would throw where it has not.
 void expect_relief(const TargetBody& target);
 
 // Adds the heights of the target's surface over the recipe's body (in the file's frame) as a relief layer,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "estimation/shape/details/detailed_check.h"
@@ -80,11 +81,16 @@ nlohmann::ordered_json relief_json(const ReliefFit& relief) {
 
 void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options,
                     ShapeFitResult& fit) {
-  // A mesh with longer edges than the target's would lack what the heights hold of it.
+  // A mesh with longer edges than the target's would lack what the heights of a relief hold of it.
   constexpr double kMostCells = 2048.0;
   const Vec3d extent = target.surface.bounds().extent();
   const double cells = std::max({extent.x, extent.y, extent.z}) / mean_edge(target.surface);
-  const int resolution = std::max(options.check_resolution, static_cast<int>(std::min(cells, kMostCells)));
+  const bool has_relief = std::any_of(recipe.layers.begin(), recipe.layers.end(), [](const Layer& layer) {
+    return std::holds_alternative<ReliefLayer>(layer);
+  });
+  const int resolution =
+      has_relief ? std::max(options.check_resolution, static_cast<int>(std::min(cells, kMostCells)))
+                 : options.check_resolution;
   fit.check = check_recipe(target, recipe, resolution, options.check_samples, options.seed);
   const MeasuredSimilarity measured =
       measure_similarity(target.surface, fit.check.mesh, PairFeatures::ahd, kSimilarityPoints, options.seed);

@@ -339,7 +339,8 @@ void OptionTable::check_files() const {
 
 bool OptionTable::makes_folders() const {
   const std::vector<const OptionRow*> given = given_rows();
-  return std::any_of(given.begin(), given.end(), [](const OptionRow* row) { return row->makes_folders; });
+  return std::any_of(given.begin(), given.end(),
+                     [](const OptionRow* row) { return row->makes_folders && !row->words.front().empty(); });
 }
 
 void OptionTable::require_not_written(const fs::path& file) const {

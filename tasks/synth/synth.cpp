@@ -1,6 +1,7 @@
 #include "tasks/synth/synth.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cstdint>
 #include <filesystem>

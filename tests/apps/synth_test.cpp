@@ -107,7 +107,7 @@ TEST_F(SynthMemory, MemoryOfAFoldedSurfaceIsMetFromBothSides) {
   EXPECT_GE(predicted.at("triangles"), 0.8 * made.at("triangles").get<double>());
 }
 
-// An eroded mesh is held in memory, with its edges and verticals, beside the tiles of impulses.
+// An eroded mesh is held in memory, with its edges and verticals, beside the bricks of impulses.
 TEST_F(SynthMemory, MemoryOfErosionIsPredicted) {
   write("eroded.json",
         two_spheres_with(gabor_layer(0.007, 32), R"(, "erosion": {"talus_angle": 30, "iterations": 5})"));
@@ -116,8 +116,8 @@ TEST_F(SynthMemory, MemoryOfErosionIsPredicted) {
   EXPECT_LE(figures(line).at("peak_bytes"), 1.2 * predicted);
 }
 
-// A block here needs tiles of 200 MB, many times what the cache keeps of them.
-TEST_F(SynthMemory, ThreadsHoldFewTilesOfImpulses) {
+// A block here needs bricks of 200 MB, many times what the cache keeps of them.
+TEST_F(SynthMemory, ThreadsHoldFewBricksOfImpulses) {
   write("dense.json", two_spheres_with(gabor_layer(0.02, 400)));
   EXPECT_LE(figures("dense.json -o out.ply --resolution 12 --threads 2").at("peak_bytes"), 120e6);
 }

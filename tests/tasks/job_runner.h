@@ -1,6 +1,12 @@
 // Runs a job in the test's own process, with the words of its program's command line.
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "apps/program.h"
 #include "tests/support/command_test.h"
 

@@ -150,7 +150,10 @@ int spheres_for_bytes(int bytes) {
   return static_cast<int>(std::clamp((bytes - kText) / bytes_each, 1.0, 10000.0));
 }
 
-int bytes_for_spheres(int spheres) { return static_cast<int>(std::ceil(kText + kBytesEach * spheres)); }
+int bytes_for_spheres(int spheres) {
+  constexpr double kOfFew = 150.0;  // few metaballs are large, and share little
+  return static_cast<int>(std::ceil(kText + kOfFew + kBytesEach * spheres));
+}
 
 void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
   const std::uint64_t seed = options.seed;

@@ -103,8 +103,8 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   // Heights farther apart show the ground of a model with longer edges.
   layer.edge = std::max(mean_edge(surface), layer.spacing);
   if (layer.edge > kMostReliefEdge * layer.spacing) {
-    throw InputError("relief.spacing: is below an eighth of the mean edge of the surface, which is " +
-                     std::to_string(layer.edge) + "; make it larger");
+    throw InputError(
+        "the spacing of the heights is below an eighth of the surface's mean edge; make it larger");
   }
   constexpr double kSamplesShare = 0.5;  // of the time
   bool stopped = false;
@@ -115,7 +115,9 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
       });
   if (stopped) return fit;
   if (samples.places.empty() || samples.samples.empty()) {
-    throw InputError("the body lies nowhere near the surface; fit its base first");
+    throw InputError(
+        "no height reaches the surface: the body lies elsewhere, or is smaller than the spacing of the "
+        "heights");
   }
   const ReliefBlend blend(samples);
   std::vector<double> heights = solve_relief(blend, [&](double fraction, std::string_view words) {

@@ -41,7 +41,7 @@ class SurfacePoints {
   }
 
  private:
-  static constexpr double kSmallEdges = 0.5;  // spacings
+  static constexpr double kSmallEdges = 0.17;  // spacings
 
   static std::size_t groups(std::size_t points) { return (points + kGroup - 1) / kGroup; }
   std::vector<Vec3d> vertices(std::size_t first) const {

@@ -42,7 +42,7 @@ struct ReliefSamples {
 // The places of the recipe's body at this spacing, and the samples of `surface`: its vertices, and four
 // points of each facet. Both are in the recipe's frame and unit. Samples whose projection misses the bare
 // surface by more than a quarter of the spacing are left out: no height brings the surface there. Expects a
-// body without operations and warps. Where the spacing is two mean edges and more, the vertices serve alone.
+// body without operations and warps. Where the spacing is six mean edges and more, the vertices serve alone.
 // A result without places where progress asked to stop. Throws as find_relief_places().
 ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, double spacing,
                              const Progress& progress);

@@ -1,8 +1,6 @@
 // synth: what it refuses, and in which words.
-#include <png.h>
 #include <unistd.h>
 
-#include "numerics/files/sha256.h"
 #include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
