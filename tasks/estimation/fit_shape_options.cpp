@@ -19,7 +19,7 @@ namespace {
 // More of them bring the heights hardly nearer, and make a likeness of them rougher underneath.
 constexpr int kMetaballsUnderRelief = 80;
 // With fewer bytes metaballs alone come nearer (docs/accuracy.md#relief).
-constexpr int kFewestBytesOfRelief = 4000;
+constexpr int kFewestBytesOfRelief = 6000;
 constexpr double kFewestSpacings = 8.0;  // of heights along the diagonal of a body
 
 // The input, the output and the fit of the metaballs.
@@ -48,7 +48,7 @@ void declare_base_options(OptionTable& app, FitArguments& arguments) {
          "--bytes", arguments.bytes,
          "the most bytes of the result as a compact recipe (RECIPE.astro), for the least error: the numbers "
          "of the metaballs are rounded, and heights are as many as fit. Without --spheres the number of "
-         "metaballs follows from the bytes, some 4 each, and there are no heights below 4,000 bytes unless "
+         "metaballs follows from the bytes, some 4 each, and there are no heights below 6,000 bytes unless "
          "--details relief asks for them. The recipe has no provenance then")
       .check(in_range(100, 10000000))
       .default_text("");
@@ -159,8 +159,9 @@ void check_relief(const TargetBody& target, const FitArguments& arguments) {
   const double most = target.diagonal * norm(target.surface.bounds().extent()) / kFewestSpacings;
   const double spacing = relief_spacing_of(details.relief_spacing, arguments.unit, edge);
   if (spacing >= least && spacing <= most) return;
-  throw InputError(fmt::format("--relief-spacing: is {:.4g} {}, and this model bears {:.4g} to {:.4g}",
-                               spacing, arguments.unit, least, most));
+  throw InputError(
+      fmt::format("--relief-spacing: is {:.4g} {}, and this model bears {:.4g} to {:.4g}; take one of these",
+                  spacing, arguments.unit, least, most));
 }
 
 void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments) {

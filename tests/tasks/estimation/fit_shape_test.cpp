@@ -67,6 +67,43 @@ TEST_F(FitShape, WritesACompactRecipeOfAtMostTheBytes) {
   EXPECT_EQ(recipe_to_json(recipe("egg.astro")), fit("egg.json", "--base-only --bytes 140"));
 }
 
+// A finer egg, which may have a relief.
+class FitShapeRelief : public FitShape {
+ protected:
+  FitShapeRelief() { write("fine.obj", testing::ellipsoid_obj(2.5, 0.7, 0.6, 24, 32)); }
+  nlohmann::json made(const std::string& options) const {
+    return figures("fine.obj -o out.astro --population 2 --points 400 --noise-seeds 0 " + options);
+  }
+};
+
+TEST_F(FitShapeRelief, BytesHoldMetaballsAndHeights) {
+  const auto summary = made("--details relief --spheres 6 --bytes 900");
+  EXPECT_LE(text("out.astro").size(), 900u);
+  EXPECT_GE(summary.at("relief").at("heights"), 100);
+  EXPECT_LT(summary["mean_distance"], 0.5 * summary["base"]["mean_distance"].get<double>());
+}
+
+TEST_F(FitShapeRelief, FewBytesAreMetaballsAlone) {
+  EXPECT_FALSE(made("--bytes 200").contains("relief"));
+  EXPECT_LE(text("out.astro").size(), 200u);
+}
+
+TEST_F(FitShapeRelief, SpacingsThatTheModelDoesNotBearAreRefusedBeforeTheFit) {
+  refuse_all("fine.obj -o out.json --relief-spacing ", {{"0.1edges", "and this model bears"},
+                                                        {"1e-9", "and this model bears"},
+                                                        {"10km", "and this model bears"}});
+  refuse("egg.obj -o out.json --relief-spacing 1", "of at least 1000 facets");
+}
+
+TEST_F(FitShapeRelief, ASpacingOfAutoIsTheDefault) {
+  made("--details relief --spheres 6");
+  const std::string without = recipe_to_json(recipe("out.astro"));
+  made("--details relief --spheres 6 --relief-spacing auto");
+  Recipe with = recipe("out.astro");
+  std::erase_if(with.provenance.options, [](const auto& option) { return option.first == "relief-spacing"; });
+  EXPECT_EQ(recipe_to_json(with), without);
+}
+
 TEST_F(FitShape, ARealBodyIsFittedCloselyLong) {
   const auto gaspra = testing::package_file("gaspra.bmf");
   ASTROLITH_SKIP_WITHOUT(gaspra);
