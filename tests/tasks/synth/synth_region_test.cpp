@@ -133,5 +133,20 @@ TEST_F(SynthRegion, LayersLeftOutAreNamed) {
   EXPECT_TRUE(json("s.json").at("layers_left_out").empty());
 }
 
+// Floats of the body's frame would show steps of a millimetre.
+TEST_F(SynthRegion, APatchOfALargeBodyKeepsFineLayers) {
+  write("big.json", ball_recipe("m", 8500, R"(,
+    "layers": [{"type": "gabor", "pixel_size": 0.004, "height_rms": 0.004, "lobes": [[3, -0.05, 0.1, 1]]}])"));
+  succeed("big.json -o out.ply --resolution 96 --device cpu --patch 8500 0 0 0.5");
+  double squares = 0.0, sum = 0.0;
+  const TriangleMesh mesh = read_mesh(folder_ / "out.ply");
+  for (const Vec3d& p : mesh.vertices) {
+    sum += p.x;
+    squares += p.x * p.x;
+  }
+  const double n = static_cast<double>(mesh.vertices.size());
+  EXPECT_NEAR(std::sqrt(squares / n - sum * sum / (n * n)), 0.004, 0.001);
+}
+
 }  // namespace
 }  // namespace astrolith

@@ -201,6 +201,20 @@ TEST_F(Synth, EveningIsMeasured) {
   EXPECT_TRUE(analyze_topology(read_mesh(folder_ / "even.ply")).closed);
 }
 
+TEST_F(Synth, EveningHasTheSameBytesForAnyThreadsAndTheTrianglesAsWithout) {
+  const std::string one = synthesise("a.ply", "--even --threads 1");
+  EXPECT_EQ(synthesise("b.ply", "--even --threads 3"), one);
+  EXPECT_NE(synthesise("plain.ply"), one);
+  EXPECT_EQ(read_mesh(folder_ / "a.ply").triangles, read_mesh(folder_ / "plain.ply").triangles);
+}
+
+TEST_F(Synth, EveningTakesMemoryThatIsPredicted) {
+  const auto bytes = [&](const std::string& more) {
+    return figures("r.json --predict --resolution 256" + more)["predicted"]["peak_bytes"].get<double>();
+  };
+  EXPECT_GT(bytes(" --even"), bytes(""));
+}
+
 TEST_F(Synth, EveningGoesWithOtherOptions) {
   synthesise("even.obj", "--even");
   synthesise("even.glb", "--even");

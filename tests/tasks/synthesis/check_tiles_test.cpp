@@ -261,5 +261,10 @@ TEST_F(CheckTiles, BadCertificatesAreRefused) {
   refuse_tiles(summary(7), "tile_7.json: ");
 }
 
+TEST_F(CheckTiles, EvenTilesJoinPlainOnes) {
+  for (int i = 1; i <= kTiles; ++i) make_tile(i, i % 2 == 0 ? "--resolution 96 --even" : "--resolution 96");
+  EXPECT_EQ(check(summaries()).status, 0);
+}
+
 }  // namespace
 }  // namespace astrolith
