@@ -20,6 +20,7 @@ namespace {
 constexpr int kMetaballsUnderRelief = 80;
 // With fewer bytes metaballs alone come nearer (docs/accuracy.md#relief).
 constexpr int kFewestBytesOfRelief = 6000;
+constexpr int kFewestBytesOfBoth = 400;
 constexpr double kFewestSpacings = 8.0;  // of heights along the diagonal of a body
 
 // The input, the output and the fit of the metaballs.
@@ -154,6 +155,11 @@ void check_relief(const TargetBody& target, const FitArguments& arguments) {
   const DetailArguments& details = arguments.details;
   if (!details.makes_relief()) return;
   if (!details.chosen_by_job() || details.gives_spacing()) expect_relief(target);
+  if (!details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesOfBoth) {
+    throw InputError(
+        fmt::format("--bytes: {} hold no heights beside metaballs; give {} or more, or --base-only",
+                    arguments.bytes, kFewestBytesOfBoth));
+  }
   if (!details.gives_spacing()) return;
   const double edge = target.diagonal * mean_edge(target.surface), least = edge / kMostReliefEdge;
   const double most = target.diagonal * norm(target.surface.bounds().extent()) / kFewestSpacings;
@@ -172,7 +178,8 @@ void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& ar
   ShapeFitOptions& fit = arguments.fit;
   fit.bytes = arguments.bytes;
   if (job.options.option("--spheres").count() == 0) {
-    if (arguments.bytes > 0) fit.spheres = spheres_for_bytes(arguments.bytes);
+    // Under a relief half of few bytes are the heights'.
+    if (arguments.bytes > 0) fit.spheres = spheres_for_bytes(relief ? arguments.bytes / 2 : arguments.bytes);
     if (relief) fit.spheres = std::min(fit.spheres, kMetaballsUnderRelief);
   }
   if (relief && arguments.bytes > 0) fit.bytes = std::min(fit.bytes, bytes_for_spheres(fit.spheres));

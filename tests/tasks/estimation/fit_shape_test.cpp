@@ -92,6 +92,7 @@ TEST_F(FitShapeRelief, SpacingsThatTheModelDoesNotBearAreRefusedBeforeTheFit) {
   refuse_all("fine.obj -o out.json --relief-spacing ", {{"0.1edges", "and this model bears"},
                                                         {"1e-9", "and this model bears"},
                                                         {"10km", "and this model bears"}});
+  refuse("fine.obj -o out.json --details relief --bytes 100", "hold no heights beside metaballs");
   refuse("egg.obj -o out.json --relief-spacing 1", "of at least 1000 facets");
 }
 

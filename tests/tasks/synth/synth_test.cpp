@@ -210,7 +210,7 @@ TEST_F(Synth, EveningHasTheSameBytesForAnyThreadsAndTheTrianglesAsWithout) {
 
 TEST_F(Synth, EveningTakesMemoryThatIsPredicted) {
   const auto bytes = [&](const std::string& more) {
-    return figures("r.json --predict --resolution 256" + more)["predicted"]["peak_bytes"].get<double>();
+    return figures("r.json --predict --resolution 1024" + more)["predicted"]["peak_bytes"].get<double>();
   };
   EXPECT_GT(bytes(" --even"), bytes(""));
 }
