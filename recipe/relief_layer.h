@@ -44,7 +44,7 @@ struct ReliefLayer : NamedImage {
   // The length here of a unit of the donor, which keeps its own lengths, and with it those of this layer: its
   // places could not be found again in another unit. 1 without a donor.
   double donor_scale = 1.0;
-  // Of the ground that the heights show, length units: the mean edge of the model, or a larger spacing.
+  // The mean edge of the model that was measured, or the spacing where that is larger, length units.
   double edge = 0.0;         // 0: 1.2 spacings
   double reach = 0.3;        // of donors with kLike, as a share of the body's diagonal
   bool fill_unseen = false;  // whether ground that no camera saw gets patches of seen ground

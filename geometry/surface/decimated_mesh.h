@@ -12,8 +12,8 @@ namespace astrolith {
 // which may add vertices. Throws InputError for indices out of range.
 TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices);
 
-// Merges the vertices of each cubic cell (Rossignac and Borrel 1993) of a size that leaves about `vertices`;
-// takes a hundredth of the time. The mesh itself where it has no more. The result need not be a manifold.
+// Merges the vertices of each cubic cell (Rossignac and Borrel 1993) of a size that leaves about `vertices`,
+// in the time of a sort. The mesh itself where it has no more. The result need not be a manifold.
 TriangleMesh clustered(const TriangleMesh& mesh, std::size_t vertices);
 
 }  // namespace astrolith

@@ -10,7 +10,7 @@ struct HeightRange {
   int low = 0, high = 0;  // 1 <= low <= high <= 65535
 };
 
-// How heights are predicted: closely, or in a third of the time with some more bytes.
+// How heights are predicted: closely, or from fewer pixels, which is quicker and takes more bytes.
 enum class Prediction { kClose, kQuick };
 
 // Writes the values that are not 0, or reads them in their place. All are in `range`.

@@ -16,7 +16,7 @@
 namespace astrolith {
 namespace {
 
-// More of them bring the heights hardly nearer, and make a likeness of them rougher underneath.
+// Heights over 200 are hardly nearer and take more bytes (docs/accuracy.md#relief).
 constexpr int kMetaballsUnderRelief = 80;
 // With fewer bytes metaballs alone come nearer (docs/accuracy.md#relief).
 constexpr int kFewestBytesOfRelief = 6000;
@@ -26,9 +26,7 @@ constexpr double kFewestSpacings = 8.0;  // of heights along the diagonal of a b
 // The input, the output and the fit of the metaballs.
 void declare_base_options(OptionTable& app, FitArguments& arguments) {
   app.add_option("mesh", arguments.mesh,
-                 "mesh of a closed body (" + read_mesh_words() +
-                     "); takes some 450 bytes of "
-                     "memory a facet")
+                 "mesh of a closed body (" + read_mesh_words() + "); takes some 750 bytes of memory a facet")
       .required()
       .placeholder("MESH")
       .reads();
