@@ -40,6 +40,19 @@ void on_interrupt(int signal_number) {
   }
 }
 
+// Ignored, it stays so: a shell starts its background jobs that way.
+void heed(int signal_number) {
+  if (std::signal(signal_number, on_interrupt) == SIG_IGN) std::signal(signal_number, SIG_IGN);
+}
+
+// Dies of the signal that stopped the work, so that whoever started the program knows: a shell's loop ends.
+[[noreturn]] void die_of_signal() {
+  std::fflush(nullptr);
+  std::signal(g_signal, SIG_DFL);
+  std::raise(g_signal);
+  std::abort();  // not reached
+}
+
 void end_bar() {
   if (g_bar_open.exchange(false)) std::fputc('\n', stderr);
 }
@@ -159,16 +172,16 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   } catch (const InputError& e) {
     return refuse(e.what());
   }
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  heed(SIGINT);
+  heed(SIGTERM);
   std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
   std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
   const ThreadLimit limit(threads);
   try {
     timed(work);
     end_bar();
-    if (part_failed_) return 1;
-    return interrupted() ? 3 : 0;
+    if (interrupted()) die_of_signal();
+    return part_failed_ ? 1 : 0;
   } catch (const InputError& e) {
     print_line(fmt::format("{}: {}", name_, naming_options(e.what())));
     return 2;
@@ -177,6 +190,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     return 1;
   } catch (const std::exception& e) {
     print_line(fmt::format("{}: {}", name_, e.what()));
+    if (interrupted()) die_of_signal();
     return 1;
   }
 }

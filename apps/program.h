@@ -1,6 +1,6 @@
 // The frame of every program: the common options, progress bars on a terminal, one-line errors,
-// Ctrl-C, --summary, and the exit status: 0 (done), 1 (the work failed), 2 (the command line or an input is
-// wrong) or 3 (stopped by Ctrl-C; the output holds the best so far).
+// Ctrl-C, --summary, and the exit status: 0 (done), 1 (the work failed) or 2 (the command line or an input is
+// wrong). A program that a signal stops cleans up, keeps the best so far, and then dies of that signal.
 //
 //   int main(int argc, char** argv) {
 //     Program program("synth", "Turns a recipe into a mesh.");
@@ -24,8 +24,8 @@ class Program : public Job {
   ~Program() override;
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
-  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. Work that ends
-  // after Ctrl-C without an exception has kept its best so far and gives 3. The summary is written only when
+  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. After Ctrl-C the
+  // process ends by its signal in place of a return. The summary is written only when
   // the work is done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best result so far.
   int run(int argc, char** argv, const std::function<void()>& work);
 

@@ -66,6 +66,34 @@ bool sync_folder(const fs::path& folder) {
   return done;
 }
 
+// The file that a name stands for: a link is written through, and need not lead to a file yet.
+fs::path through_links(fs::path target) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code error;
+  for (int i = 0; i < kMostLinks; ++i) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return target;  // no link
+    target = folder_of(target) / next;
+  }
+  throw InputError(target.string() + ": is a link that leads to itself; give the name of a file");
+}
+
+// Replacing a file asks no right to write it, which its owner may have taken away.
+void require_not_read_only(const fs::path& target) {
+  struct stat status;
+  if (::stat(target.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+  if ((status.st_mode & 0222) != 0 && ::access(target.c_str(), W_OK) == 0) return;
+  throw InputError(target.string() + ": is read-only; give another name, or allow writing (chmod u+w)");
+}
+
+// The new file has the mode of the one that it replaces, and its owner where that is allowed.
+void take_rights_of(const fs::path& target, int descriptor) {
+  struct stat status;
+  if (::stat(target.c_str(), &status) != 0) return;
+  const bool owned = ::fchown(descriptor, status.st_uid, status.st_gid) == 0;
+  if (owned || status.st_uid == ::geteuid()) static_cast<void>(::fchmod(descriptor, status.st_mode & 0777));
+}
+
 // Renaming would replace a device by a file, or take away the name under which a program sees its own output.
 void require_replaceable(const fs::path& target) {
   std::error_code error;
@@ -126,12 +154,14 @@ FileHandle open_nameless_file(const fs::path& target) {
   return create(name.c_str());
 }
 
-OutputFile::OutputFile(const fs::path& target, Start start) : target_(target) {
+OutputFile::OutputFile(const fs::path& target, Start start) : packed_(target.extension() == ".zst") {
   require_replaceable(target);
   require_creatable(target);
-  if (start == Start::kNameless) file_ = open_linkable_file(target);
+  target_ = through_links(target);
+  require_not_read_only(target_);
+  if (start == Start::kNameless) file_ = open_linkable_file(target_);
   if (file_) return;
-  temporary_ = std::make_unique<TemporaryName>(target);
+  temporary_ = std::make_unique<TemporaryName>(target_);
   file_ = create(temporary_->c_str());
   if (!file_) {
     throw InputError(target_.string() + ": cannot write (" + std::strerror(errno) +
@@ -162,8 +192,9 @@ void OutputFile::compress() {
 }
 
 void OutputFile::commit() {
-  if (target_.extension() == ".zst") compress();
+  if (packed_) compress();
   const int descriptor = duplicate_descriptor();
+  take_rights_of(target_, descriptor);
   bool done = std::fclose(file_.release()) == 0;
   done = done && sync(descriptor) && name_it(descriptor) && sync_folder(folder_of(target_));
   const int error = errno;

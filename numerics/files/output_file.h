@@ -59,6 +59,9 @@ FileHandle open_nameless_file(const std::filesystem::path& target);
 // This holds through a power cut, too: commit() waits until the disk has the content before it gives the
 // name, and then until the disk has the name. UnsyncedOutputs leaves that out.
 //
+// As with programs that write in place, a target that is a link is written through, and one that exists keeps
+// its mode.
+//
 // A target whose name ends in .zst is compressed by commit() (numerics/files/zstd_stream.h).
 class OutputFile {
  public:
@@ -66,7 +69,7 @@ class OutputFile {
   enum class Start { kNameless, kNamed };
 
   // Throws InputError when the folder does not exist or cannot be written, or when the target exists and is
-  // no regular file.
+  // read-only or no regular file.
   explicit OutputFile(const std::filesystem::path& target, Start start = Start::kNameless);
 
   // Appends bytes. Throws WorkError when the disk is full.
@@ -88,7 +91,8 @@ class OutputFile {
   bool name_it(int descriptor);
   bool replace_target(const std::string& nameless);
 
-  std::filesystem::path target_;
+  std::filesystem::path target_;  // no link
+  bool packed_;
   std::unique_ptr<TemporaryName> temporary_;  // null while the file has no name
   FileHandle file_;
 };

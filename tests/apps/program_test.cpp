@@ -166,7 +166,7 @@ TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
     std::raise(SIGINT);
     if (progress(0.2, "")) std::exit(11);
   };
-  EXPECT_EXIT(std::exit(status_of({"--summary", file}, work)), ::testing::ExitedWithCode(3), "");
+  EXPECT_EXIT(status_of({"--summary", file}, work), ::testing::KilledBySignal(SIGINT), "");
   EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file)).at("interrupted").get<bool>());
 }
 
@@ -176,9 +176,28 @@ TEST(ProgramDeathTest, ASignalIsCalledByItsName) {
       std::raise(signal_number);
       std::fprintf(stderr, "stopped by %s\n", p.stopped_by());
     };
-    EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(3),
-                std::string("stopped by ") + name);
+    EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(number), std::string("stopped by ") + name);
   }
+}
+
+TEST(ProgramDeathTest, WorkThatAStopBreaksOffDiesOfTheSignal) {
+  const auto work = [](Program&) {
+    std::raise(SIGTERM);
+    throw WorkError("stopped before anything was made");
+  };
+  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGTERM), "stopped before anything was made");
+}
+
+// As in the background of a script.
+TEST(ProgramDeathTest, AnIgnoredCtrlCStaysIgnored) {
+  const auto ignoring = [] {
+    std::signal(SIGINT, SIG_IGN);
+    std::exit(status_of({}, [](Program& p) {
+      std::raise(SIGINT);
+      if (p.stopped()) std::exit(10);
+    }));
+  };
+  EXPECT_EXIT(ignoring(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {

@@ -189,6 +189,35 @@ TEST_F(OutputFileTest, HasThePermissionsOfAnyNewFile) {
   }
 }
 
+TEST_F(OutputFileTest, ALinkIsWrittenThrough) {
+  fs::create_directories(folder / "elsewhere");
+  fs::create_symlink("elsewhere/file", folder / "link");
+  fs::create_symlink("link", folder / "link_to_link");
+  for (const std::string content : {"first", "second"}) {
+    astrolith::write_file(folder / "link_to_link", content);
+    EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link_to_link"));
+    EXPECT_EQ(text_of(folder / "elsewhere" / "file"), content);
+  }
+  fs::create_symlink("ring", folder / "ring");
+  EXPECT_THROW(OutputFile(folder / "ring"), InputError);
+}
+
+TEST_F(OutputFileTest, AFileKeepsItsMode) {
+  for (const OutputFile::Start start : {OutputFile::Start::kNameless, OutputFile::Start::kNamed}) {
+    write_file(folder / "mode", start);
+    fs::permissions(folder / "mode", fs::perms(0640));
+    write_file(folder / "mode", start);
+    EXPECT_EQ(fs::status(folder / "mode").permissions(), fs::perms(0640));
+  }
+}
+
+TEST_F(OutputFileTest, AReadOnlyFileIsNotReplaced) {
+  astrolith::write_file(folder / "kept", "kept");
+  fs::permissions(folder / "kept", fs::perms(0444));
+  EXPECT_THROW(OutputFile(folder / "kept"), InputError);
+  EXPECT_EQ(text_of(folder / "kept"), "kept");
+}
+
 TEST_F(OutputFileTest, TheNameMayBeAsLongAsTheSystemAllows) {
   for (int times = 0; times < 2; ++times) write_file(folder / std::string(255, 'n'));
   EXPECT_EQ(names_in(folder).size(), 1u);
