@@ -1,9 +1,15 @@
 #include "geometry/orient_faces.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "geometry/mesh_edges.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_parts.h"
 
 namespace astrolith {
 namespace {
@@ -15,60 +21,101 @@ struct Neighbour {
   bool alike = true;
 };
 
-std::vector<std::array<Neighbour, 3>> neighbours(const TriangleMesh& mesh) {
-  std::vector<std::array<Neighbour, 3>> result(mesh.triangles.size());
-  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
-    if (edge.size() != 2) return;
-    const bool alike = edge[0].forward != edge[1].forward;
-    result[edge[0].triangle][edge[0].corner] = {edge[1].triangle, alike};
-    result[edge[1].triangle][edge[1].corner] = {edge[0].triangle, alike};
-  });
-  return result;
-}
+struct Components {
+  std::vector<std::uint32_t> number;  // (#F) from 0, in the order of their first faces
+  std::vector<double> border;         // length of the edges with an odd number of faces
+};
 
-// Six times the signed volume of the cone from the origin over a face.
-double cone_volume(const TriangleMesh& mesh, const Vec3d& origin, const Triangle& t) {
-  const auto corner = [&](int k) { return mesh.vertices[t[static_cast<std::size_t>(k)]] - origin; };
-  return dot(corner(0), cross(corner(1), corner(2)));
-}
+void turn(Triangle& t) { std::swap(t[1], t[2]); }
 
-// Extends `component` from its first face to all faces reached across shared edges. Marks in `flipped` the
-// faces to be reversed, and returns six times the signed volume of the component after these reversals.
-double wind_alike(const TriangleMesh& mesh, const std::vector<std::array<Neighbour, 3>>& adjacent,
-                  const Vec3d& origin, std::vector<std::uint32_t>& component,
-                  std::vector<std::uint8_t>& visited, std::vector<std::uint8_t>& flipped) {
-  double volume = 0.0;
-  for (std::size_t i = 0; i < component.size(); ++i) {  // component grows on the way
-    const std::uint32_t face = component[i];
-    const double cone = cone_volume(mesh, origin, mesh.triangles[face]);
-    volume += flipped[face] != 0 ? -cone : cone;
-    for (const Neighbour& n : adjacent[face]) {
-      if (n.face == Neighbour::kNone || visited[n.face] != 0) continue;
-      visited[n.face] = 1;
-      flipped[n.face] = n.alike ? flipped[face] : !flipped[face];
-      component.push_back(n.face);
+// Winds the faces that can be reached from `seed` alike, and numbers their component.
+void wind_alike(TriangleMesh& mesh, const std::vector<std::array<Neighbour, 3>>& adjacent, std::uint32_t seed,
+                std::uint32_t component, std::vector<std::uint32_t>& number) {
+  std::vector<std::uint32_t> faces{seed};
+  std::vector<bool> turned{false};
+  number[seed] = component;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (const Neighbour& n : adjacent[faces[i]]) {
+      if (n.face == Neighbour::kNone || number[n.face] != Neighbour::kNone) continue;
+      number[n.face] = component;
+      faces.push_back(n.face);
+      turned.push_back(turned[i] == n.alike);
     }
   }
-  return volume;
+  const auto many = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
+  const bool as_the_others = 2 * many > faces.size();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (turned[i] != as_the_others) turn(mesh.triangles[faces[i]]);
+  }
+}
+
+Components wind_components(TriangleMesh& mesh) {
+  std::vector<std::array<Neighbour, 3>> adjacent(mesh.triangles.size());
+  const std::vector<TriangleSide> sides = sorted_sides(mesh);
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
+    if (edge.size() != 2) return;
+    const bool alike = edge[0].forward != edge[1].forward;
+    adjacent[edge[0].triangle][edge[0].corner] = {edge[1].triangle, alike};
+    adjacent[edge[1].triangle][edge[1].corner] = {edge[0].triangle, alike};
+  });
+  Components components{std::vector<std::uint32_t>(mesh.triangles.size(), Neighbour::kNone), {}};
+  std::uint32_t count = 0;
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (components.number[f] == Neighbour::kNone) {
+      wind_alike(mesh, adjacent, f, count++, components.number);
+    }
+  }
+  components.border.assign(count, 0.0);
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
+    if (edge.size() % 2 == 0) return;
+    const double length = norm(mesh.vertices[edge[0].low] - mesh.vertices[edge[0].high]);
+    for (const TriangleSide& side : edge) components.border[components.number[side.triangle]] += length;
+  });
+  return components;
+}
+
+constexpr std::size_t kUnknown = ~std::size_t{0};
+
+// (#parts) the outermost part around each, or the part itself; kUnknown where finding out would take too
+// long.
+std::vector<std::size_t> outermost(const std::vector<MeshPart>& parts) {
+  std::vector<std::size_t> by_volume(parts.size());
+  std::iota(by_volume.begin(), by_volume.end(), std::size_t{0});
+  std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(parts[a].volume) > std::abs(parts[b].volume);
+  });
+  std::vector<std::size_t> around(parts.size());
+  PartNesting nesting;
+  for (std::size_t i = 0; i < by_volume.size(); ++i) {
+    const std::size_t inner = by_volume[i];
+    around[inner] = inner;
+    for (std::size_t j = 0; j < i && around[inner] == inner; ++j) {
+      if (nesting.lies_inside(parts[inner], parts[by_volume[j]])) around[inner] = around[by_volume[j]];
+    }
+    if (nesting.spent()) around[inner] = kUnknown;
+  }
+  return around;
 }
 
 }  // namespace
 
 TriangleMesh orient_faces(TriangleMesh mesh) {
-  const auto adjacent = neighbours(mesh);
-  // The volume of an open component depends on the apex of its cones: the centre of the bounding box.
-  const Vec3d origin = mesh.bounds().center();
-  std::vector<std::uint8_t> visited(mesh.triangles.size(), 0), flipped(mesh.triangles.size(), 0);
-  std::vector<std::uint32_t> component;
-  for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
-    if (visited[seed] != 0) continue;
-    visited[seed] = 1;
-    component.assign(1, seed);
-    const bool inside_out = wind_alike(mesh, adjacent, origin, component, visited, flipped) < 0.0;
-    for (const std::uint32_t face : component) {
-      Triangle& t = mesh.triangles[face];
-      if ((flipped[face] != 0) != inside_out) std::swap(t[1], t[2]);
-    }
+  if (mesh.triangles.empty()) return mesh;
+  const Components components = wind_components(mesh);
+  const std::vector<MeshPart> parts = parts_of(mesh, components.number);
+  std::vector<char> inside_out(parts.size());
+  bool any = false;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double border = components.border[p];
+    const bool has_inside = border == 0.0 || border * border < 0.5 * surface_area(parts[p].mesh);
+    inside_out[p] = has_inside && parts[p].volume < 0.0 ? 1 : 0;
+    any = any || inside_out[p] != 0;
+  }
+  if (!any) return mesh;
+  const std::vector<std::size_t> around = outermost(parts);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const std::size_t outer = around[components.number[f]];
+    if (outer != kUnknown && inside_out[outer] != 0) turn(mesh.triangles[f]);
   }
   return mesh;
 }

@@ -5,10 +5,15 @@
 
 namespace astrolith {
 
-// Winds neighbouring faces alike, and then each connected component such that its own volume is positive. The
-// wall of a cavity is a component of its own and comes out wound like a body. Faces are neighbours across
-// edges that exactly two faces share; a one-sided surface keeps a seam. Only the order of a face's vertices
-// changes. Indices must be in range.
+// Winds neighbouring faces alike, as most of their component are, and turns closed components outwards that
+// were inside out:
+//   - a component that lies in no other has a positive volume afterwards;
+//   - one inside another, such as the wall of a cavity, is turned where the outermost one around it is, and
+//     keeps its sense otherwise.
+// An open component counts as closed where its border is short: its square is below half the area. Others,
+// such as patches of ground, keep the sense of most of their faces. Faces are neighbours across edges that
+// exactly two faces share; a one-sided surface keeps a seam. Only the order of a face's vertices changes.
+// Indices must be in range.
 TriangleMesh orient_faces(TriangleMesh mesh);
 
 }  // namespace astrolith

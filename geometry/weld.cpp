@@ -133,4 +133,18 @@ TriangleMesh drop_degenerate_and_repeated_faces(TriangleMesh mesh) {
   return mesh;
 }
 
+TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles) number[t[0]] = number[t[1]] = number[t[2]] = 1;
+  TriangleMesh compact;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == 0) continue;
+    number[v] = static_cast<std::uint32_t>(compact.vertices.size());
+    compact.vertices.push_back(mesh.vertices[v]);
+  }
+  compact.triangles = mesh.triangles;
+  for (Triangle& t : compact.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+  return compact;
+}
+
 }  // namespace astrolith

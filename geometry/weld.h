@@ -16,4 +16,7 @@ TriangleMesh weld_vertices(TriangleMesh mesh, double tolerance);
 // winding or the other. All vertices stay.
 TriangleMesh drop_degenerate_and_repeated_faces(TriangleMesh mesh);
 
+// The vertices that faces use, in their order, without normals and colours.
+TriangleMesh without_unused_vertices(const TriangleMesh& mesh);
+
 }  // namespace astrolith

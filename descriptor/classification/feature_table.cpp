@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "geometry/io/mesh_io.h"
-#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 
@@ -19,14 +17,6 @@ std::string naming(const std::filesystem::path& file, const std::string& message
   return message.starts_with(name) ? message : name + ": " + message;
 }
 
-// Says that a mesh is open; empty for a closed one.
-std::string open_remark(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  const std::int64_t edges = analyze_topology(mesh).boundary_edges;
-  if (edges == 0) return "";
-  return file.string() + ": open, " + std::to_string(edges) + (edges == 1 ? " edge has" : " edges have") +
-         " one face only; used as it is";
-}
-
 // Moves the lines that are not empty, in their order.
 void keep_filled(std::vector<std::string>& lines, std::vector<std::string>& kept) {
   for (std::string& line : lines) {
@@ -37,7 +27,7 @@ void keep_filled(std::vector<std::string>& lines, std::vector<std::string>& kept
 }  // namespace
 
 FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
-                               const Progress& progress) {
+                               const ShapeReader& read, const Progress& progress) {
   check(options);
   FeatureTable table{FeatureRows(files.size()), {}, {}};
   std::vector<std::string> failures(files.size()), remarks(files.size());
@@ -57,9 +47,7 @@ FeatureTable features_of_files(std::span<const std::filesystem::path> files, con
     const Progress within = [&](double, std::string_view) { return go_on(files[i], 0); };
     if (!within(0, "")) return;
     try {
-      const TriangleMesh mesh = read_mesh_or_points(files[i]);
-      table.rows[i] = shape_features(mesh, options, within);
-      remarks[i] = open_remark(files[i], mesh);
+      table.rows[i] = shape_features(read(files[i], remarks[i]), options, within);
     } catch (const std::runtime_error& e) {  // InputError, WorkError
       const std::lock_guard lock(reporting);
       if (stopped) return;

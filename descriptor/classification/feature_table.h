@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,13 +16,16 @@ namespace astrolith {
 struct FeatureTable {
   FeatureRows rows;                   // (#files); empty where the file could not be used
   std::vector<std::string> failures;  // one line for each such file, with its name
-  std::vector<std::string> remarks;   // one line for each file that is used although its mesh is open
+  std::vector<std::string> remarks;   // one line for each file that is used and was mended, or is open
 };
+
+// Reads a file, several at once; what there is to say of it goes into `remark`. Throws InputError.
+using ShapeReader = std::function<TriangleMesh(const std::filesystem::path& file, std::string& remark)>;
 
 // Reads the files in parallel; the result does not depend on the number of threads. Throws InputError for
 // options out of range, and WorkError when progress asks to stop.
 FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
-                               const Progress& progress = {});
+                               const ShapeReader& read, const Progress& progress = {});
 
 // The rows that are not empty, with their labels.
 LabelledFeatures labelled(const LabelledFiles& files, const FeatureTable& table);

@@ -6,7 +6,7 @@ from typing import Optional, Sequence
 
 from astrolith import _arrays, _estimation, _options
 from astrolith._arrays import PathLike
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, surface_of
 from astrolith._options import Progress
 
 _CLASS_FEATURES = ("ahd", "wahl", "d2", "shapedna")
@@ -70,6 +70,6 @@ def classify(model: PathLike, mesh: MeshLike, *, threads: int = 0, progress: Pro
     ValueError
         The file is no classifier, or the mesh has no area.
     """
-    arrays = arrays_of(mesh, "mesh")
+    arrays = surface_of(mesh, "mesh")
     classes, votes = _estimation.classify(_arrays.file_name(model, "model"), arrays.vertices, arrays.faces, _options.threads(threads), progress)
     return dict(zip(classes, votes))

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of, pair_of
+from astrolith._mesh import MeshLike, surface_of, pair_of
 from astrolith._options import Progress
 from astrolith._recipe import Record, records
 
@@ -72,7 +72,7 @@ def describe(
     ValueError
         The mesh has no area, or an argument is out of range.
     """
-    arrays = arrays_of(mesh, "mesh", points=True)
+    arrays = surface_of(mesh, "mesh", points=True)
     bins = _arrays.integer(bins, "bins", 2, 10)
     made = _synthesis.describe(
         arrays.name,

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of, unit_of
+from astrolith._mesh import MeshLike, surface_of, unit_of
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, json_of, records
 from astrolith._units import METRES
@@ -213,7 +213,7 @@ def gravity(
         if unit is not None:
             raise ValueError("unit: a recipe states its own; leave the argument out")
     else:
-        arrays = arrays_of(body, "body")
+        arrays = surface_of(body, "body")
         name, length_unit = arrays.name, unit_of(body, unit, tuple(METRES), "body")
     table, columns, figures = _synthesis.gravity(
         name,

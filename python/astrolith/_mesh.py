@@ -92,6 +92,20 @@ class Arrays:
     normals: Optional[npt.NDArray[np.float64]]
 
 
+def surface_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
+    """Checks a mesh that is measured, and winds it as the programs do.
+
+    Vertices at equal places are merged where that closes borders, and faces are turned outwards; warns of both.
+    """
+    arrays = arrays_of(mesh, name, points=points)
+    wound = _synthesis.wound_surface(arrays.vertices, arrays.faces)
+    if wound is None:
+        return arrays
+    vertices, faces, words = wound
+    _warn(f"{arrays.name}: {words}")
+    return Arrays(arrays.name, vertices, faces, None)
+
+
 def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
     """Checks a mesh. With `points`, vertices with normals and without faces will do."""
     if _arrays.is_file_name(mesh):
@@ -162,7 +176,7 @@ def pair_of(a: MeshLike, b: MeshLike, unit: str) -> tuple[Arrays, Arrays, str]:
     "km" for both meshes, or "": what they state.
     """
     given = _arrays.choice(unit, "unit", ("", "m", "km")) or None
-    of_a, of_b = arrays_of(a, "a"), arrays_of(b, "b")
+    of_a, of_b = surface_of(a, "a"), surface_of(b, "b")
     unit_of_a, unit_of_b = unit_of(a, given, (), "a", ""), unit_of(b, given, (), "b", "")
     if unit_of_a in METRES and unit_of_b in METRES:
         if unit_of_a != unit_of_b:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, arrays_of, surface_of
 from astrolith._options import Progress
 
 _LUNAR_SHARES = {"rock": 0.35, "lambert": 0.0, "lommel-seeliger": 1.0}
@@ -65,7 +65,8 @@ def render(
     ValueError
         The mesh or an argument is wrong.
     """
-    arrays = arrays_of(mesh, "mesh")
+    # Colours belong to the vertices as they are.
+    arrays = surface_of(mesh, "mesh") if colors is None else arrays_of(mesh, "mesh")
     directions = [_arrays.vector(view, "views") for view in _arrays.items(views, "views")]
     words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else _arrays.items(cameras, "cameras"))]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)

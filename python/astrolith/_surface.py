@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of, pair_of
+from astrolith._mesh import MeshLike, surface_of, pair_of
 from astrolith._options import Progress
 from astrolith._recipe import Record, records
 
@@ -79,7 +79,7 @@ def describe_surface(
     ValueError
         The mesh has too few triangles or no area, or an argument is out of range.
     """
-    arrays = arrays_of(mesh, "mesh")
+    arrays = surface_of(mesh, "mesh")
     made = _synthesis.surface(
         arrays.name,
         arrays.vertices,

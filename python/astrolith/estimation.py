@@ -98,6 +98,7 @@ def repair_mesh(
     faces: Optional[npt.ArrayLike] = None,
     *,
     wrap: bool = False,
+    union: bool = False,
     all_parts: bool = False,
     progress: Progress = None,
 ) -> tuple[Mesh, Record]:
@@ -112,6 +113,8 @@ def repair_mesh(
     wrap
         Where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of it, or fails: wrap the
         mesh at 1/200 of the diagonal.
+    union
+        Make one surface of parts that overlap or lie inside one another. Cavities stay.
     all_parts
         Keep all bodies of a mesh that holds several; otherwise the largest.
 
@@ -136,6 +139,6 @@ def repair_mesh(
     arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
     unit = stated_unit(mesh)
     vertices, triangles, figures = _estimation.repair_mesh(
-        arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(all_parts), unit, progress
+        arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(union), bool(all_parts), unit, progress
     )
     return Mesh(vertices, triangles, length_unit=unit), records(figures)

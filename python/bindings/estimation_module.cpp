@@ -40,7 +40,8 @@ void train_classifier_file(const std::vector<std::string>& folders, const std::s
   run_job(std::move(progress), threads, [=](JobState& state) {
     const std::vector<std::filesystem::path> paths(folders.begin(), folders.end());
     const LabelledFiles files = find_classes(paths);
-    const FeatureTable table = features_of_files(files.files, features, state.progress("describe"));
+    const FeatureTable table =
+        features_of_files(files.files, features, read_mended_surface, state.progress("describe"));
     if (!table.failures.empty()) throw InputError(table.failures.front());
     const ShapeClassifier classifier = train_classifier(labelled(files, table), features, training);
     if (state.stopped()) throw WorkError("stopped before the classifier was written");
@@ -52,17 +53,19 @@ void train_classifier_file(const std::vector<std::string>& folders, const std::s
 // The repaired vertices and faces, and the figures.
 std::tuple<NumpyArray<double>, NumpyArray<std::uint32_t>, std::string> repair_in_job(
     const std::string& name, const Rows<double>& vertices, const Rows<std::uint32_t>& faces, bool wrap,
-    bool all_parts, const std::string& unit, nb::object progress) {
+    bool unite, bool all_parts, const std::string& unit, nb::object progress) {
   RepairOptions options;
   options.wrap = wrap;
+  options.unite = unite;
   options.all_parts = all_parts;
+  options.overlap = "rock counts twice, and walls lie inside it; union=True makes one surface of them";
   options.remedy = "repair it, or pass wrap=True";
   MeshRepair repair =
       run_job(std::move(progress), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState& state) {
         return repair_mesh(mesh, name, options, state.progress("repair"));
       });
   nlohmann::ordered_json figures = repair_json(repair);
-  figures["words"] = repair_words(repair, unit);
+  figures["words"] = repair_words(repair, unit, options);
   const std::size_t n = repair.mesh.vertices.size(), m = repair.mesh.triangles.size();
   return {array_of<double>(std::move(repair.mesh.vertices), {n, 3}),
           array_of<std::uint32_t>(std::move(repair.mesh.triangles), {m, 3}), figures.dump()};
@@ -88,8 +91,8 @@ NB_MODULE(_estimation, module) {
   declare_common(module);
   declare_fits(module);
   module.def("repair_mesh", &repair_in_job, nb::arg("name"), nb::arg("vertices").noconvert(),
-             nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("unit"),
-             nb::arg("progress").none());
+             nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("unite"), nb::arg("all_parts"),
+             nb::arg("unit"), nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),

@@ -16,6 +16,7 @@
 #include "tasks/description/evaluation_json.h"
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
+#include "tasks/repair/mesh_repair.h"
 
 namespace astrolith {
 namespace {
@@ -105,7 +106,7 @@ FeatureOptions chosen_features(const Arguments& a, std::uint64_t seed) {
 
 FeatureTable features_with_failures(Job& job, const std::vector<fs::path>& files,
                                     const FeatureOptions& options) {
-  FeatureTable table = features_of_files(files, options, job.progress("describe"));
+  FeatureTable table = features_of_files(files, options, read_mended_surface, job.progress("describe"));
   for (const std::string& failure : table.failures) job.report_failure(failure);
   for (const std::string& remark : table.remarks) job.say(remark);
   job.summary["failed"] = table.failures;

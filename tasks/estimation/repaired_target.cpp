@@ -15,10 +15,11 @@ RepairedTarget repaired_target(TriangleMesh mesh, const std::string& name, const
   const auto repair = [&] {
     MeshRepair done = repair_mesh(std::move(mesh), name, options, repairing);
     mesh = std::move(done.mesh);
-    if (std::string words = repair_words(done, unit); !words.empty()) said.push_back(std::move(words));
-    if (done.changed || done.bodies > 1) figures = repair_json(done);
+    if (std::string words = repair_words(done, unit, options); !words.empty())
+      said.push_back(std::move(words));
+    if (done.changed || says_of_parts(done)) figures = repair_json(done);
   };
-  options.caller_welds = true;
+  options.overlap = "the union is fitted";
   repair();
   try {
     return {prepare_target(mesh, name, preparing), said, figures};

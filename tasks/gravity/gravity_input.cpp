@@ -25,10 +25,6 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file,
     GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
     if (const std::string asked = unit_question(file, volume(body.mesh), body.metres); !asked.empty())
       job.say(asked);
-    if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
-      job.say(file.string() + ": holds " + std::to_string(surfaces) +
-              " surfaces apart from one another, bodies or cavities: their gravity is that of all together");
-    }
     return body;
   }
   const Recipe recipe = load_recipe(file);

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "numerics/errors.h"
+#include "tasks/repair/cgal_guard_internal.h"
 #include "tasks/repair/cgal_repair_internal.h"
 
 namespace astrolith {
@@ -44,35 +45,6 @@ constexpr std::size_t kFewestFairEdges = 6;
 // the mesh.
 constexpr unsigned int kMostCrossings = 20000;
 constexpr double kMostCrossingShare = 0.02;
-
-// CGAL prints what it finds wrong before it throws. Libraries are silent.
-class SilentCgal {
- public:
-  SilentCgal()
-      : error_(CGAL::set_error_handler(&SilentCgal::ignore)),
-        warning_(CGAL::set_warning_handler(&SilentCgal::ignore)) {}
-  ~SilentCgal() {
-    CGAL::set_error_handler(error_);
-    CGAL::set_warning_handler(warning_);
-  }
-  SilentCgal(const SilentCgal&) = delete;
-  SilentCgal& operator=(const SilentCgal&) = delete;
-
- private:
-  static void ignore(const char*, const char*, const char*, int, const char*) {}
-  CGAL::Failure_function error_, warning_;
-};
-
-// Runs a step of CGAL; what CGAL finds wrong becomes an InputError.
-template <typename Step>
-auto guarded(const std::string& name, const char* what, const Step& step) {
-  const SilentCgal silent;
-  try {
-    return step();
-  } catch (const CGAL::Failure_exception&) {
-    throw InputError(name + ": " + what);
-  }
-}
 
 std::vector<Point> points_of(const TriangleMesh& mesh) {
   std::vector<Point> points;

@@ -1,4 +1,4 @@
-// What CGAL does for a repair. Its headers are included by one source alone. Builds without the fitting
+// What CGAL does for a repair. Its headers are included by two sources alone. Builds without the fitting
 // packages have no CGAL: these functions then throw InputError.
 #pragma once
 
@@ -36,5 +36,10 @@ UncrossedMesh remove_crossings(const TriangleMesh& mesh, const std::string& name
 // closed surface without crossings around the mesh, or around its vertices where it has no facets. Balls of
 // radius `alpha` do not pass through it, and it lies about `offset` outside. Lengths are those of the mesh.
 TriangleMesh alpha_wrapped(const TriangleMesh& mesh, double alpha, double offset, const std::string& name);
+
+// The surface of the union of all components, each of which is closed, less the cavities: components of
+// negative volume. A smaller component may lie in a larger cavity. No walls are buried. Computed exactly, and
+// rounded to doubles at the end. Throws InputError for a component that passes through itself.
+TriangleMesh united(const TriangleMesh& mesh, const std::string& name, const Progress& progress);
 
 }  // namespace astrolith

@@ -16,11 +16,13 @@
 #include "geometry/points/nearest_neighbours.h"
 #include "geometry/surface/surface_tree.h"
 #include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tasks/repair/border_repair_internal.h"
 #include "tasks/repair/cgal_repair_internal.h"
 #include "tasks/repair/fin_repair_internal.h"
+#include "tasks/repair/repair_words.h"
 #include "tasks/repair/scene_bodies_internal.h"
 
 namespace astrolith {
@@ -45,28 +47,6 @@ bool is_sound(const MeshTopology& topology) {
   return topology.closed && topology.non_manifold_edges == 0 && topology.oriented;
 }
 
-TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
-  for (const Triangle& t : mesh.triangles) number[t[0]] = number[t[1]] = number[t[2]] = 1;
-  TriangleMesh compact;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == 0) continue;
-    number[v] = static_cast<std::uint32_t>(compact.vertices.size());
-    compact.vertices.push_back(mesh.vertices[v]);
-  }
-  compact.triangles = mesh.triangles;
-  for (Triangle& t : compact.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  return compact;
-}
-
-void turn_all(TriangleMesh& mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-}
-
-bool wound_alike(const Triangle& a, const Triangle& b) {
-  return (a[0] == b[0] && a[1] == b[1]) || (a[1] == b[0] && a[2] == b[1]) || (a[2] == b[0] && a[0] == b[1]);
-}
-
 // Step 1. Equal vertices and facets, and the winding of a mesh that is closed.
 void weld(MeshRepair& repair) {
   TriangleMesh& mesh = repair.mesh;
@@ -81,15 +61,10 @@ void weld(MeshRepair& repair) {
 // Winds the facets of a closed mesh alike and outwards. False where it is one-sided.
 bool orient(MeshRepair& repair) {
   TriangleMesh& mesh = repair.mesh;
-  const std::vector<Triangle> before = mesh.triangles;
-  if (!analyze_topology(mesh).oriented) {
-    mesh = orient_faces(std::move(mesh));
-    if (!analyze_topology(mesh).oriented) return false;
-  }
-  if (volume(mesh) < 0.0) turn_all(mesh);
-  for (std::size_t f = 0; f < before.size(); ++f) {
-    repair.turned_facets += wound_alike(before[f], mesh.triangles[f]) ? 0 : 1;
-  }
+  TriangleMesh oriented = orient_faces(mesh);
+  if (!analyze_topology(oriented).oriented) return false;
+  repair.turned_facets += count_turned(mesh, oriented);
+  mesh = std::move(oriented);
   return true;
 }
 
@@ -345,7 +320,8 @@ MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Prog
   const TriangleMesh surface = as_surface(mesh);
   const SurfaceTree tree(surface);
   move_onto(repair.mesh, tree, repair.wrap_offset);
-  if (volume(repair.mesh) < 0.0) turn_all(repair.mesh);
+  orient(repair);
+  repair.turned_facets = 0;
   repair.moved = distance_moved(repair.mesh, surface);
   require_sound(repair.mesh, name);
   return repair;
@@ -361,25 +337,37 @@ void require_finite(const TriangleMesh& mesh, const std::string& name) {
   }
 }
 
-// Keeps the largest body of a scene.
-void keep_largest(MeshRepair& repair, bool all_parts) {
-  LargestBody largest = largest_body(all_parts ? repair.mesh : std::move(repair.mesh));
-  repair.bodies = largest.bodies;
-  if (largest.bodies == 1) {
-    if (!all_parts) repair.mesh = std::move(largest.mesh);
-    return;
+// Keeps the largest body of a scene, or all, and says how its parts lie to one another.
+void sort_bodies(MeshRepair& repair, bool all_parts) {
+  SceneBodies scene = bodies_of_scene(repair.mesh);
+  repair.bodies = scene.bodies;
+  if (scene.bodies > 1 && !all_parts) {
+    repair.changed = true;
+    repair.kept_volume = scene.volume_share;
+    repair.mesh = without_unused_vertices(scene.largest);
+    scene = bodies_of_scene(repair.mesh);
   }
-  if (all_parts) return;
-  repair.changed = true;
-  repair.mesh = without_unused_vertices(largest.mesh);
-  repair.kept_volume = largest.volume_share;
+  repair.overlapping_parts = scene.overlapping;
+  repair.nested_parts = scene.nested;
+  repair.cavities = scene.cavities;
+}
+
+void unite_parts(MeshRepair& repair, const std::string& name, const Progress& progress) {
+  if (repair.overlapping_parts + repair.nested_parts == 0) return;
+  repair.mesh = united(repair.mesh, name, progress);
+  draw_apart(repair.mesh, repair.diagonal);
+  require_sound(repair.mesh, name);
+  repair.changed = repair.united = true;
+}
+
+MeshRepair with_bodies(MeshRepair repair, const std::string& name, const RepairOptions& options,
+                       const Progress& progress) {
+  sort_bodies(repair, options.all_parts);
+  if (options.unite) unite_parts(repair, name, progress);
+  return repair;
 }
 
 }  // namespace
-
-bool is_closed_body(const TriangleMesh& mesh) {
-  return !mesh.triangles.empty() && is_sound(analyze_topology(mesh)) && volume(mesh) > 0.0;
-}
 
 TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap) {
   const bool points = mesh_extension(file) == ".xyz";
@@ -398,33 +386,58 @@ MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairO
   repair.diagonal = mesh.bounds().diagonal();
   if (!options.crossings && is_closed_body(mesh)) {
     repair.mesh = std::move(mesh);
-    keep_largest(repair, options.all_parts);
-    return repair;
+    return with_bodies(std::move(repair), name, options, progress);
   }
   require_finite(mesh, name);
   repair.mesh = mesh;
+  repair.changed = true;
   try {
     const bool closed = !mesh.triangles.empty() && weld_and_orient(repair);
-    if (mesh.triangles.empty() || repair.mesh.triangles.empty()) {
-      if (!mesh.triangles.empty()) throw InputError(name + ": has no face with an area");
+    if (mesh.triangles.empty()) {
       repair = wrapped(mesh, name, progress);
+    } else if (repair.mesh.triangles.empty()) {
+      throw InputError(name + ": has no face with an area");
     } else if (!closed || options.crossings) {
-      repair.changed = true;
       mend(repair, name, options, progress);
-    } else if (!options.caller_welds) {
-      repair.changed = true;
     }
   } catch (const InputError& e) {
     if (!options.wrap) throw InputError(std::string(e.what()) + "; " + options.remedy);
     repair = wrapped(mesh, name, progress);
   }
-  keep_largest(repair, options.all_parts);
-  if (repair.changed) return repair;
-  MeshRepair untouched;
-  untouched.mesh = std::move(mesh);
-  untouched.diagonal = repair.diagonal;
-  untouched.bodies = repair.bodies;
-  return untouched;
+  return with_bodies(std::move(repair), name, options, progress);
+}
+
+MeshRepair mend_surface(TriangleMesh mesh, const std::string& name, RepairOptions options,
+                        const Progress& progress) {
+  options.all_parts = true;
+  if (!mesh.triangles.empty() || options.wrap) {
+    try {
+      return repair_mesh(mesh, name, options, progress);
+    } catch (const InputError&) {
+      if (options.wrap || options.unite) throw;
+    }
+  }
+  MeshRepair repair;
+  repair.diagonal = mesh.bounds().diagonal();
+  WoundSurface wound = wound_surface(std::move(mesh));
+  repair.changed = wound.changed();
+  repair.merged_vertices = wound.merged_vertices;
+  repair.turned_facets = wound.turned_faces;
+  repair.mesh = std::move(wound.mesh);
+  return repair;
+}
+
+TriangleMesh read_mended_surface(const std::filesystem::path& file, std::string& remark) {
+  const std::string name = file.string();
+  MeshRepair repair = mend_surface(read_mesh_or_points(file), name, {});
+  remark = repair_words(repair, "");
+  const std::int64_t open = repair.mesh.triangles.empty() ? 0 : open_edges(repair.mesh);
+  if (open > 0) {
+    remark += (remark.empty() ? "" : "; ") + ("open, " + std::to_string(open)) +
+              (open == 1 ? " edge has" : " edges have") + " one face only; used as it is";
+  }
+  if (!remark.empty()) remark = name + ": " + remark;
+  return std::move(repair.mesh);
 }
 
 }  // namespace astrolith

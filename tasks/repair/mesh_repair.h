@@ -39,12 +39,13 @@ inline constexpr double kWrapAlpha = 1.0 / 200.0, kWrapOffset = 1.0 / 2000.0;
 struct RepairOptions {
   bool wrap = false;       // where the steps fail, move or fill too much, the mesh is wrapped
   bool all_parts = false;  // keep all bodies of a scene; otherwise the largest
-  // The caller welds vertices and turns facets itself: a mesh that needs no more comes back unchanged.
-  bool caller_welds = false;
+  bool unite = false;      // make one surface of parts that overlap or lie in one another
   // The caller found that the mesh passes through itself.
   bool crossings = false;
   // What messages say to do where a wrap would help.
   std::string remedy = "repair it, or add --wrap";
+  // What messages say of parts that overlap, and to do about it.
+  std::string overlap = "rock counts twice, and walls lie inside it; --union makes one surface of them";
 };
 
 // All counts are 0 where nothing was done. Shares are of the area of the surface.
@@ -68,10 +69,11 @@ struct MeshRepair {
   double wrap_alpha = 0.0, wrap_offset = 0.0;  // in the unit of the mesh
   std::int64_t bodies = 1;                     // bodies of the scene, apart from one another
   double kept_volume = 1.0;                    // share of the volume of all bodies that the mesh has
+  std::int64_t overlapping_parts = 0;          // that reach into a larger one of the same body
+  std::int64_t nested_parts = 0;               // inside a larger one, as if rock lay in rock
+  std::int64_t cavities = 0;
+  bool united = false;  // overlapping and nested parts are one surface now
 };
-
-// Whether every edge has two facets wound alike, and the volume is positive.
-bool is_closed_body(const TriangleMesh& mesh);
 
 // Reads a mesh. Where a wrap is allowed also points: .xyz, or a file of points with normals. Throws
 // InputError as read_mesh does.
@@ -83,5 +85,16 @@ TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap);
 // alone. The work is bounded by the number of facets: a mesh too damaged for that is refused.
 MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairOptions& options,
                        const Progress& progress = {});
+
+// Repairs a surface, which need not be closed: all bodies of a scene are kept, and a mesh that cannot be
+// repaired, such as a patch, has its equal vertices merged and its facets wound alike. Points without faces
+// come back as they are unless a wrap is allowed. Throws what repair_mesh throws where a wrap or a union is
+// asked for.
+MeshRepair mend_surface(TriangleMesh mesh, const std::string& name, RepairOptions options,
+                        const Progress& progress = {});
+
+// Reads a mesh, or points with normals, and mends it. `remark` says what was done or that the mesh is open,
+// with the file's name, and is empty otherwise. Throws InputError as read_mesh does.
+TriangleMesh read_mended_surface(const std::filesystem::path& file, std::string& remark);
 
 }  // namespace astrolith

@@ -24,4 +24,8 @@ TriangleMesh alpha_wrapped(const TriangleMesh& /*mesh*/, double /*alpha*/, doubl
   refuse(name);
 }
 
+TriangleMesh united(const TriangleMesh& /*mesh*/, const std::string& name, const Progress& /*progress*/) {
+  refuse(name);
+}
+
 }  // namespace astrolith

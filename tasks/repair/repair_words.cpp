@@ -22,9 +22,42 @@ std::string moved_words(const MeshRepair& repair, const std::string& unit) {
   return fmt::format("nothing moved by more than {:.2g} % of the diagonal", 100.0 * bound / repair.diagonal);
 }
 
+std::string words_of_bodies(const MeshRepair& repair) {
+  if (repair.bodies == 1) return "";
+  return fmt::format("holds {} bodies apart from one another", repair.bodies) +
+         (repair.kept_volume < 1.0
+              ? fmt::format(", the largest is taken ({:.3g} % of the volume)", 100.0 * repair.kept_volume)
+              : ", all are taken");
+}
+
+// "1 part reaches into a larger one and 2 lie inside a larger one".
+std::string words_of_overlaps(const MeshRepair& repair, const std::string& overlap) {
+  std::string words;
+  if (repair.overlapping_parts > 0) {
+    words = fmt::format("{} into a larger one",
+                        count_words(repair.overlapping_parts, "part reaches", "parts reach"));
+  }
+  if (repair.nested_parts > 0) {
+    if (!words.empty()) words += " and ";
+    words += fmt::format("{} in the rock of a larger one",
+                         count_words(repair.nested_parts, "part lies", "parts lie"));
+  }
+  if (words.empty()) return words;
+  return words + (repair.united ? ": united" : ": " + overlap);
+}
+
+void append(std::string& words, const std::string& more) {
+  if (!words.empty() && !more.empty()) words += "; ";
+  words += more;
+}
+
 }  // namespace
 
-std::string repair_words(const MeshRepair& repair, const std::string& unit) {
+bool says_of_parts(const MeshRepair& repair) {
+  return repair.bodies > 1 || repair.overlapping_parts + repair.nested_parts + repair.cavities > 0;
+}
+
+std::string repair_words(const MeshRepair& repair, const std::string& unit, const RepairOptions& options) {
   std::vector<std::string> done;
   const auto add = [&](std::int64_t count, std::string_view verb, std::string_view one, std::string_view many,
                        const std::string& more = "") {
@@ -48,13 +81,9 @@ std::string repair_words(const MeshRepair& repair, const std::string& unit) {
   std::string words;
   for (const std::string& item : done) words += item + ", ";
   if (!words.empty()) words += moved_words(repair, unit);
-  if (repair.bodies > 1) {
-    if (!words.empty()) words += "; ";
-    words += fmt::format("holds {} bodies apart from one another", repair.bodies);
-    words += repair.kept_volume < 1.0
-                 ? fmt::format(", the largest is taken ({:.3g} % of the volume)", 100.0 * repair.kept_volume)
-                 : ", all are taken";
-  }
+  append(words, words_of_bodies(repair));
+  append(words, words_of_overlaps(repair, options.overlap));
+  if (repair.cavities > 0) append(words, count_words(repair.cavities, "cavity", "cavities"));
   return words;
 }
 
@@ -74,7 +103,11 @@ nlohmann::ordered_json repair_json(const MeshRepair& repair) {
           {"wrap_alpha", repair.wrap_alpha},
           {"wrap_offset", repair.wrap_offset},
           {"bodies", repair.bodies},
-          {"kept_volume", repair.kept_volume}};
+          {"kept_volume", repair.kept_volume},
+          {"overlapping_parts", repair.overlapping_parts},
+          {"nested_parts", repair.nested_parts},
+          {"cavities", repair.cavities},
+          {"united", repair.united}};
 }
 
 }  // namespace astrolith

@@ -2,11 +2,22 @@
 
 #include <utility>
 
-#include "geometry/mesh_topology.h"
-#include "numerics/errors.h"
 #include "tasks/repair/repair_words.h"
 
 namespace astrolith {
+namespace {
+
+// The repaired mesh, of which the job says what was done.
+TriangleMesh told(const Job& job, MeshRepair repair, const std::string& name, const std::string& unit,
+                  const RepairOptions& options, nlohmann::ordered_json& figures) {
+  if (const std::string words = repair_words(repair, unit, options); !words.empty()) {
+    job.say(name + ": " + words);
+  }
+  if (repair.changed || says_of_parts(repair)) figures = repair_json(repair);
+  return std::move(repair.mesh);
+}
+
+}  // namespace
 
 void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
   const Option refuse =
@@ -18,6 +29,10 @@ void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
                "it, or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
                "without faces (.xyz) are wrapped, too")
       .excludes(refuse);
+  app.add_flag("--union", unite,
+               "make one surface of parts that overlap or lie inside one another, so that no rock counts "
+               "twice and no wall is buried; cavities stay")
+      .excludes(refuse);
   if (!of_bodies) return;
   app.add_flag("--all-parts", all_parts,
                "take all bodies of a file that holds several, in place of the largest")
@@ -28,6 +43,7 @@ RepairOptions ShapeRepair::options() const {
   RepairOptions options;
   options.wrap = wrap;
   options.all_parts = all_parts;
+  options.unite = unite;
   return options;
 }
 
@@ -39,32 +55,15 @@ TriangleMesh ShapeRepair::closed_body(const Job& job, TriangleMesh mesh, const s
                                       const std::string& unit, const RepairOptions& options,
                                       nlohmann::ordered_json& figures) const {
   if (strict) return mesh;
-  MeshRepair repair = repair_mesh(std::move(mesh), name, options, job.progress("repair"));
-  if (const std::string words = repair_words(repair, unit); !words.empty()) job.say(name + ": " + words);
-  if (repair.changed || repair.bodies > 1) figures = repair_json(repair);
-  return std::move(repair.mesh);
+  return told(job, repair_mesh(std::move(mesh), name, options, job.progress("repair")), name, unit, options,
+              figures);
 }
 
 TriangleMesh ShapeRepair::mended_surface(const Job& job, TriangleMesh mesh, const std::string& name,
                                          nlohmann::ordered_json& figures) const {
-  const bool points = mesh.triangles.empty();
-  if (strict || (points && !wrap)) return mesh;
-  if (!points) {
-    const MeshTopology topology = analyze_topology(mesh);
-    if (topology.closed && topology.non_manifold_edges == 0) return mesh;
-  }
-  RepairOptions options = this->options();
-  options.all_parts = options.caller_welds = true;
-  try {
-    MeshRepair repair = repair_mesh(mesh, name, options, job.progress("repair"));
-    if (!repair.changed) return mesh;
-    job.say(name + ": " + repair_words(repair, ""));
-    figures = repair_json(repair);
-    return std::move(repair.mesh);
-  } catch (const InputError&) {
-    if (wrap) throw;
-    return mesh;
-  }
+  if (strict) return mesh;
+  return told(job, mend_surface(std::move(mesh), name, options(), job.progress("repair")), name, "",
+              options(), figures);
 }
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// What programs do with a mesh that is no closed body: --strict, --wrap and --all-parts.
+// What programs do with a mesh that is no closed body: --strict, --wrap, --union and --all-parts.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace astrolith {
 
 struct ShapeRepair {
-  bool strict = false, wrap = false, all_parts = false;
+  bool strict = false, wrap = false, unite = false, all_parts = false;
 
   // Programs of surfaces take all bodies of a scene: they have no --all-parts.
   void add_to(OptionTable& app, bool of_bodies = true);
@@ -27,8 +27,7 @@ struct ShapeRepair {
                            const std::string& unit, const RepairOptions& options,
                            nlohmann::ordered_json& figures) const;
 
-  // The mesh repaired for a program that takes any surface: a mesh that cannot be repaired, such as a patch,
-  // comes back as it is, and so does one that is closed.
+  // The mesh repaired for a program that takes any surface, as mend_surface does.
   TriangleMesh mended_surface(const Job& job, TriangleMesh mesh, const std::string& name,
                               nlohmann::ordered_json& figures) const;
 };

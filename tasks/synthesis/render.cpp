@@ -11,6 +11,7 @@
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/colormap.h"
@@ -72,9 +73,18 @@ void color_by(Job& job, const Arguments& a, PreviewOptions& options) {
                       range.low, range.high, range.least, range.most));
 }
 
+// Values of vertices belong to those of the file, which are not merged then.
+TriangleMesh read_surface(const Job& job, const Arguments& a) {
+  TriangleMesh mesh = read_mesh(a.shape);
+  WoundSurface wound = wound_surface(mesh);
+  if (!a.color.empty() && wound.merged_vertices > 0) return mesh;
+  if (wound.changed()) job.say(a.shape.string() + ": " + wound.words());
+  return std::move(wound.mesh);
+}
+
 void run(Job& job, const Arguments& a) {
   check(job, a);
-  const TriangleMesh mesh = read_mesh(a.shape);
+  const TriangleMesh mesh = read_surface(job, a);
   PreviewOptions options = a.look.options(job, mesh, unit_of_mesh(job, a.shape, {a.unit, ""}, {}));
   if (!a.color.empty()) color_by(job, a, options);
   a.look.write(job, render_picture(mesh, options, job.progress("render")), a.output);

@@ -10,8 +10,8 @@
 #include "geometry/mesh_topology.h"
 #include "geometry/orient_faces.h"
 #include "geometry/surface/mesh_sampling.h"
-#include "geometry/surface/winding_number.h"
 #include "geometry/weld.h"
+#include "geometry/winding_number.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -33,7 +33,7 @@ constexpr double kJustUnder = 1e-5;  // fraction of the diagonal
 // A place may lie beyond a sharp edge or a thin wall, so this share of the places may have a wrong number.
 constexpr double kWrongWindings = 0.02;
 
-TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
+TriangleMesh numbered_by_use(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> new_of_old(mesh.vertices.size(), kUnused);
   TriangleMesh compact;
@@ -55,7 +55,7 @@ TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
 TriangleMesh welded(TriangleMesh mesh, std::vector<std::string>& remarks) {
   const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
   mesh = drop_degenerate_and_repeated_faces(weld_vertices(std::move(mesh), 0.0));
-  mesh = without_unused_vertices(mesh);
+  mesh = numbered_by_use(mesh);
   if (mesh.vertices.size() < vertices) {
     remarks.push_back(std::to_string(vertices - mesh.vertices.size()) +
                       " repeated or unused vertices merged");

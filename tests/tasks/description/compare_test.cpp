@@ -1,6 +1,8 @@
 // compare: similarity, distances and the verdict on two surfaces.
 #include "tasks/description/compare.h"
 
+#include "geometry/io/mesh_io.h"
+#include "tests/support/meshes.h"
 #include "tests/tasks/inputs.h"
 #include "tests/tasks/job_runner.h"
 
@@ -43,6 +45,30 @@ TEST_F(Compare, SpheresOfTwoSizesAreAlikeAndApart) {
   for (const char* distance : {"l2", "chi_square", "jensen_shannon", "earth_movers"})
     EXPECT_GT(other[distance], 2 * same[distance].get<double>()) << distance;
   EXPECT_NEAR(other["in_units_of_the_files"]["from_b_to_a"]["max"], 2, 0.02);
+}
+
+// One surface, however its facets are wound, and whether they share vertices.
+TEST_F(Compare, WindingAndWeldsMakeNoDifference) {
+  const TriangleMesh body = testing::subdivided(testing::torus(1.0, 0.4));
+  TriangleMesh tenth = body, soup;
+  for (std::size_t f = 0; f < tenth.triangles.size(); f += 10) {
+    std::swap(tenth.triangles[f][1], tenth.triangles[f][2]);
+  }
+  for (const Triangle& t : body.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : t) soup.vertices.push_back(body.vertices[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  write_mesh(body, folder_ / "body.obj", {});
+  write_mesh(testing::reversed(body), folder_ / "inside_out.obj", {});
+  write_mesh(tenth, folder_ / "tenth.obj", {});
+  write_mesh(soup, folder_ / "soup.obj", {});
+  for (const auto& [file, words] : testing::Refusals{{"inside_out.obj", "turned 9216 facets"},
+                                                     {"tenth.obj", "turned 922 facets"},
+                                                     {"soup.obj", "merged 23040 repeated or unused vertices"}}) {
+    EXPECT_TRUE(has(succeed("body.obj " + file + " -o c.json --points 1000 --samples 5000"), words)) << file;
+    EXPECT_GT(json("c.json")["similarity"], 0.97) << file;
+  }
 }
 
 TEST_F(Compare, BringsBothToOneUnit) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -104,9 +106,95 @@ TEST(MeshRepair, TurnsFacets) {
   const MeshRepair all = repaired(testing::reversed(bumpy()));
   expect_body(all, 1e-12);
   EXPECT_EQ(all.turned_facets, 1280);
-  RepairOptions fit;
-  fit.caller_welds = true;
-  EXPECT_FALSE(repaired(one, fit).changed);
+}
+
+TEST(MeshRepair, TurnsTheBodyThatIsInsideOutAlone) {
+  TriangleMesh scene = testing::joined(bumpy(), testing::reversed(testing::icosphere(2, 0.5, {4, 0, 0})));
+  RepairOptions all;
+  all.all_parts = true;
+  const MeshRepair repair = repaired(scene, all);
+  EXPECT_EQ(repair.turned_facets, 320);
+  EXPECT_NEAR(volume(repair.mesh), volume(bumpy()) + volume(testing::icosphere(2, 0.5)), 1e-9);
+}
+
+TEST(MeshRepair, KeepsCavities) {
+  const TriangleMesh hollow =
+      testing::joined(testing::icosphere(3), testing::reversed(testing::icosphere(2, 0.5)));
+  const double rock = volume(testing::icosphere(3)) - volume(testing::icosphere(2, 0.5));
+  EXPECT_FALSE(repaired(hollow).changed);
+  EXPECT_EQ(repaired(hollow).cavities, 1);
+  EXPECT_NEAR(volume(repaired(testing::reversed(hollow)).mesh), rock, 1e-9);
+  TriangleMesh tenth = hollow;
+  for (std::size_t f = 0; f < tenth.triangles.size(); f += 10) {
+    std::swap(tenth.triangles[f][1], tenth.triangles[f][2]);
+  }
+  EXPECT_NEAR(volume(repaired(tenth).mesh), rock, 1e-9);
+}
+
+// Two balls whose centres are `apart` share a lens; the meshes are fine enough for 1e-3.
+TEST(MeshRepair, UnitesPartsThatOverlapOrLieInOneAnother) {
+  const TriangleMesh pair = testing::two_spheres(4, 1.0, 1.0);
+  EXPECT_EQ(repaired(pair).overlapping_parts, 1);
+  EXPECT_TRUE(has(repair_words(repaired(pair), ""), "counts twice"));
+  RepairOptions unite;
+  unite.unite = true;
+  const MeshRepair repair = repaired(pair, unite);
+  EXPECT_TRUE(repair.united && is_closed_body(repair.mesh));
+  const double d = 1.0, ball = 4.0 / 3.0 * std::numbers::pi;
+  const double lens = std::numbers::pi * (4.0 + d) * (2.0 - d) * (2.0 - d) / 12.0;
+  EXPECT_NEAR(volume(repair.mesh), 2.0 * ball - lens, 0.02);
+  EXPECT_EQ(analyze_topology(repair.mesh).components, 1);
+
+  const TriangleMesh core = testing::joined(testing::icosphere(3), testing::icosphere(2, 0.5));
+  EXPECT_EQ(repaired(core).nested_parts, 1);
+  EXPECT_NEAR(volume(repaired(core, unite).mesh), volume(testing::icosphere(3)), 1e-12);
+}
+
+// A cube reaches half into another: volume and area are known exactly, faces partly coincide.
+TEST(MeshRepair, UnitesCubesWithFacesInCommonPlanes) {
+  const TriangleMesh cubes = testing::joined(testing::cube(1.0), testing::cube(1.0, {0.5, 0.0, 0.0}));
+  RepairOptions unite;
+  unite.unite = true;
+  const MeshRepair repair = repaired(cubes, unite);
+  EXPECT_NEAR(volume(repair.mesh), 1.5, 1e-15);
+  EXPECT_NEAR(surface_area(repair.mesh), 8.0, 1e-15);
+}
+
+// Two bars cross; neither has a corner inside the other.
+TEST(MeshRepair, UnitesBarsThatCross) {
+  const auto bar = [](const Vec3d& extent) {
+    TriangleMesh mesh = testing::cube(1.0, {-0.5, -0.5, -0.5});
+    for (Vec3d& p : mesh.vertices) p = {p.x * extent.x, p.y * extent.y, p.z * extent.z};
+    return mesh;
+  };
+  RepairOptions unite;
+  unite.unite = true;
+  const MeshRepair repair = repaired(testing::joined(bar({4, 1, 1}), bar({1, 4, 1})), unite);
+  EXPECT_NEAR(volume(repair.mesh), 7.0, 1e-14);
+  EXPECT_NEAR(surface_area(repair.mesh), 30.0, 1e-14);
+}
+
+TEST(MeshRepair, ARockInACavityCountsOnce) {
+  const TriangleMesh geode =
+      testing::joined(testing::joined(testing::icosphere(3), testing::reversed(testing::icosphere(3, 0.6))),
+                      testing::icosphere(2, 0.2));
+  RepairOptions unite;
+  unite.unite = true;
+  const MeshRepair repair = repaired(geode, unite);
+  EXPECT_EQ(repair.nested_parts + repair.overlapping_parts, 0);
+  EXPECT_FALSE(repair.united);
+}
+
+TEST(MeshRepair, SurfacesThatStayOpenAreWoundAlike) {
+  TriangleMesh patch = without_cap(0.2);
+  const MeshRepair good = mend_surface(patch, "patch.obj", {});
+  EXPECT_FALSE(good.changed);
+  TriangleMesh turned = patch;
+  for (std::size_t f = 0; f < turned.triangles.size(); f += 7) {
+    std::swap(turned.triangles[f][1], turned.triangles[f][2]);
+  }
+  const MeshRepair repair = mend_surface(turned, "patch.obj", {});
+  EXPECT_TRUE(repair.mesh.triangles == patch.triangles);
 }
 
 TEST(MeshRepair, DropsDoubledFacets) {

@@ -1,4 +1,4 @@
-#include "geometry/surface/winding_number.h"
+#include "geometry/winding_number.h"
 
 #include <cmath>
 #include <numbers>
