@@ -169,6 +169,9 @@ struct Recipe {
       "km";  // "m", "km", "px" (a texture without a physical scale) or
              // "body" (layers alone: shares of the longest side of the body they are laid on)
   std::string frame = "body-fixed, right-handed, +z spin pole, +x prime meridian";
+  // The place in the frame that all positions of the recipe are relative to, length units. Coordinates of a
+  // body many of its lengths from the frame's own origin would have too few digits.
+  Vec3d origin;
   std::uint64_t seed = 1;  // below 2^53, so that every JSON reader keeps it exact
   Provenance provenance;
   std::optional<MetaballBody> body;  // fit_gabor writes recipes without a body

@@ -155,6 +155,7 @@ void visit_fields(FieldVisitor& v, Recipe& recipe) {
   v.required("length_unit", recipe.length_unit);
   v.rule(check_unit, recipe);
   v.field("frame", recipe.frame);
+  v.field_if(!(recipe.origin == Vec3d{}), "origin", recipe.origin, kAnyNumber);
   v.field("seed", recipe.seed);
   v.rule(check_seed, recipe);
   v.field("provenance", recipe.provenance);

@@ -2,6 +2,7 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
@@ -11,12 +12,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/version/code_version.h"
 #include "python/bindings/arrays.h"
@@ -77,9 +80,10 @@ struct MeshArguments {
   bool labels = false;
   bool even = false;
 
-  Region region() const {
+  // `origin` is the recipe's.
+  Region region(const Vec3d& origin) const {
     if (patch) {
-      Region region = patch_region({(*patch)[0], (*patch)[1], (*patch)[2]}, (*patch)[3]);
+      Region region = patch_region(Vec3d{(*patch)[0], (*patch)[1], (*patch)[2]} - origin, (*patch)[3]);
       region.aligned = aligned;
       return region;
     }
@@ -93,6 +97,7 @@ struct MadeMesh {
   std::optional<ErosionStatistics> erosion;
   int resolution = 0;
   Region region;
+  Vec3d origin;  // of the vertices, in the frame
   std::vector<std::string> legend;
   std::vector<LayerLeftOut> left_out;
   std::vector<VertexColor> colors;  // empty where no layer paints
@@ -127,7 +132,7 @@ std::vector<VertexColor> colors_of(const ArraySink& arrays, const SurfaceColors&
 
 MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
-  Region region = arguments.region();
+  Region region = arguments.region(recipe.origin);
   const ImplicitField field = field_of_region(recipe, arguments.name, region);
   align_to_ground(field, region);
   std::optional<SurfaceLabels> labels;
@@ -136,7 +141,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
     labels.emplace(recipe, field, region.cube());
     labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
   }
-  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, region, {}, {}, {}};
+  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, region, recipe.origin + region.center, {}, {}, {}};
   made.resolution = arguments.triangles > 0.0
                         ? MeshEstimator(field, recipe, region).resolution_for(arguments.triangles)
                         : arguments.resolution;
@@ -157,7 +162,7 @@ MeshPrediction predict_of(const MeshArguments& arguments, const std::string& for
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
-  Region region = arguments.region();
+  Region region = arguments.region(recipe.origin);
   const ImplicitField field = field_of_region(recipe, arguments.name, region);
   align_to_ground(field, region);
   MeshUse use;
@@ -206,7 +211,7 @@ nb::dict figures(const MadeMesh& made) {
   figures["dropped_components"] = report.dropped_components;
   figures["evaluations"] = report.statistics.evaluations;
   figures["cell"] = report.statistics.step;
-  if (made.region.is_patch) figures["origin"] = tuple_of(made.region.center);
+  if (made.region.is_patch || !(made.origin == Vec3d{})) figures["origin"] = tuple_of(made.origin);
   if (const std::optional<GroundAxes>& axes = made.region.axes) {
     nb::dict of_patch;
     of_patch["right"] = tuple_of(axes->right);
@@ -360,6 +365,16 @@ std::vector<Fields> formats() {
 
 Fields written_format(const std::filesystem::path& file) { return fields_of(written_mesh_format(file)); }
 
+// None where nothing is to be done.
+std::optional<std::tuple<NumpyArray<double>, NumpyArray<std::uint32_t>, std::string>> wound(
+    const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {
+  WoundSurface surface = wound_surface(mesh_of(vertices, faces, {}));
+  if (!surface.changed()) return std::nullopt;
+  const std::size_t n = surface.mesh.vertices.size(), m = surface.mesh.triangles.size();
+  return std::tuple(array_of<double>(std::move(surface.mesh.vertices), {n, 3}),
+                    array_of<std::uint32_t>(std::move(surface.mesh.triangles), {m, 3}), surface.words());
+}
+
 double closed_volume(const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {
   const TriangleMesh mesh = mesh_of(vertices, faces, {});
   const MeshTopology topology = analyze_topology(mesh);
@@ -379,6 +394,7 @@ void bind_meshes(nb::module_& module) {
              nb::arg("triangles"), nb::arg("patch").none(), nb::arg("aligned"), nb::arg("tile").none(),
              nb::arg("min_component"), nb::arg("labels"), nb::arg("even"), nb::arg("format"),
              nb::arg("threads"));
+  module.def("wound_surface", &wound, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert());
   module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"));
   module.def(
       "stated_length_unit", [](const std::filesystem::path& file) { return stated_length_unit(file); },

@@ -84,6 +84,13 @@ void set_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
   numbers[column + 2] = p.z;
 }
 
+void add_to_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
+  if (!numbers[column]) return;
+  *numbers[column] += p.x;
+  *numbers[column + 1] += p.y;
+  *numbers[column + 2] += p.z;
+}
+
 Vec3d center_of(const Row& row) {
   return {*row.numbers[kCenterColumn], *row.numbers[kCenterColumn + 1], *row.numbers[kCenterColumn + 2]};
 }
@@ -240,7 +247,13 @@ void write_feature_list(const ImplicitField& field, const Recipe& recipe,
   const Vec3d origin = patch ? patch->center : Vec3d{};
   std::vector<Row> rows = rows_of(field, bare, patch, cell);
   find_surface_points(field, bare, origin, rows);
-  write_file(file, file.extension() == ".json" ? json_of(rows, recipe, origin) : csv_of(rows, recipe));
+  for (Row& row : rows) {
+    for (const std::size_t column : {kCenterColumn, kSurfaceColumn}) {
+      add_to_point(row.numbers, column, recipe.origin);
+    }
+  }
+  write_file(file, file.extension() == ".json" ? json_of(rows, recipe, recipe.origin + origin)
+                                               : csv_of(rows, recipe));
 }
 
 FeatureFinder::FeatureFinder(const ImplicitField& field, const Recipe& recipe,

@@ -34,10 +34,26 @@
 namespace astrolith {
 namespace {
 
+// A place near the middle of a mesh that lies many of its lengths from the origin of its frame, or that
+// origin: float32 coordinates would have too few digits for such a body.
+Vec3d local_origin(const TriangleMesh& mesh) {
+  constexpr double kFar = 8.0;  // lengths
+  const Box box = mesh.bounds();
+  const double length = box.diagonal();
+  if (!(norm(box.center()) > kFar * length)) return {};
+  double steps = 1.0;  // in a unit: a power of ten, so that the numbers are short
+  while (steps * length < 1.0) steps *= 10.0;
+  const auto rounded = [&](double c) { return std::round(steps * c) / steps; };
+  const Vec3d center = box.center();
+  return {rounded(center.x), rounded(center.y), rounded(center.z)};
+}
+
 // The recipe of a fitted body, without layers and without the figures that the fit achieved. With --bytes it
 // has no provenance either.
-Recipe recipe_of(const Job& job, const FitArguments& arguments, const ShapeFitResult& fit) {
+Recipe recipe_of(const Job& job, const FitArguments& arguments, const Vec3d& origin,
+                 const ShapeFitResult& fit) {
   Recipe recipe;
+  recipe.origin = origin;
   recipe.length_unit = arguments.unit;
   recipe.body = fit.body;
   if (arguments.bytes > 0) return recipe;
@@ -282,6 +298,14 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
   constexpr double kReadShare = 0.2;
   TriangleMesh mesh = read_target_mesh(arguments);
   report(heeding_a_stop(job, limit.preparation(0.0)), kReadShare, "read");
+  const Vec3d origin = arguments.packing_only ? Vec3d{} : local_origin(mesh);
+  if (!(origin == Vec3d{})) {
+    for (Vec3d& p : mesh.vertices) p = p - origin;
+    job.say(fmt::format(
+        "{}: lies far from the origin of its frame; the recipe has an origin of its own, {} {} {} {}",
+        arguments.mesh, origin.x, origin.y, origin.z, arguments.unit));
+    job.summary["origin"] = {origin.x, origin.y, origin.z};
+  }
   const TargetBody target =
       target_of(job, arguments, std::move(mesh), heeding_a_stop(job, limit.preparation(kReadShare)));
   question_unit(job, arguments, target);
@@ -302,7 +326,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
       target, arguments.fit, checkpoint,
       [&](const std::string& stage) { return limit.guard(job.progress(stage), stage); },
       [&] { return job.stopped(); });
-  Recipe& recipe = result.recipe = recipe_of(job, arguments, fit);
+  Recipe& recipe = result.recipe = recipe_of(job, arguments, origin, fit);
   const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
   if (with_details && !job.stopped() && limit.allows_more()) {
     add_details(job, arguments, target, limit, checkpoint, fit, recipe);

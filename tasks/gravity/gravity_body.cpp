@@ -44,6 +44,7 @@ GravityBody body_of_recipe(const Recipe& recipe, int resolution, const std::stri
   const ImplicitField field(recipe);
   MeshCollector collector;
   mesh_field(field, field.bounds(), resolution, collector, progress("mesh"));
+  for (Vec3d& p : collector.mesh.vertices) p += recipe.origin;
   return body_of_mesh(std::move(collector.mesh), recipe.length_unit, name);
 }
 

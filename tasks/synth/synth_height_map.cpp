@@ -27,7 +27,7 @@ Json frame_json(const HeightMap& map, const Region& region, const Recipe& recipe
   for (const float height : map.heights) without += std::isnan(height) ? 1 : 0;
   return {{"pixels", map.side},
           {"metres_per_pixel", metres * map.pixel},
-          {"origin_m", json_of(metres * (region.center + map.origin))},
+          {"origin_m", json_of(metres * (recipe.origin + region.center + map.origin))},
           {"right", json_of(map.right)},
           {"ahead", json_of(map.ahead)},
           {"up", json_of(map.up)},

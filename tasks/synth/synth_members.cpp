@@ -173,9 +173,15 @@ class MemberMaker {
         {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
     for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
     if (const auto& family = source_.recipe.family; family && !body.mesh.preview.file.empty()) {
-      if (family->any_view)
-        body.mesh.preview.look.look_from(member.view), line["view"] = json_of(member.view);
-      if (family->any_sun) body.mesh.preview.look.light_from(member.sun), line["sun"] = json_of(member.sun);
+      PictureOptions& look = body.mesh.preview.look;
+      if (family->any_view && !look.chooses_view(job_)) {
+        look.look_from(member.view);
+        line["view"] = json_of(member.view);
+      }
+      if (family->any_sun && !look.chooses_sun(job_)) {
+        look.light_from(member.sun);
+        line["sun"] = json_of(member.sun);
+      }
     }
     if (!body.output.empty()) make_mesh(job_, body.mesh, member.recipe, source_.file, body.output);
     for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",

@@ -101,7 +101,7 @@ void check_mesh_outputs(const Job& job, const MeshRequest& request, const fs::pa
 
 namespace {
 
-void summarize_mesh(Job& job, const Region& region, const MeshStatistics& statistics,
+void summarize_mesh(Job& job, const Recipe& recipe, const Region& region, const MeshStatistics& statistics,
                     const ManifoldReport& report) {
   job.summary["vertices"] = report.vertices;
   job.summary["triangles"] = report.triangles;
@@ -113,7 +113,9 @@ void summarize_mesh(Job& job, const Region& region, const MeshStatistics& statis
   job.summary["cell"] = statistics.step;
   job.summary["active_blocks"] = statistics.active_blocks;
   job.summary["total_blocks"] = statistics.total_blocks;
-  if (region.is_patch) job.summary["origin"] = json_of(region.center);
+  if (region.is_patch || !(recipe.origin == Vec3d{})) {
+    job.summary["origin"] = json_of(recipe.origin + region.center);
+  }
   if (!region.axes) return;
   job.summary["patch_axes"] = {{"right", json_of(region.axes->right)},
                                {"ahead", json_of(region.axes->ahead)},
@@ -144,6 +146,18 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
 void say_unstated_unit(const Job& job, const std::string& unit, const fs::path& output) {
   if (unit == "km" || !has_known_length(unit) || written_mesh_format(output).tells_unit) return;
   job.say(fmt::format("note: a {} states no unit; read it with --unit {}", mesh_extension(output), unit));
+}
+
+// Heights near the radius tear a body into pieces, which no seed or resolution mends.
+void question_pieces(const Job& job, const ImplicitField& field, const Recipe& recipe, std::int64_t pieces) {
+  constexpr std::int64_t kTorn = 10;
+  const Vec3d e = field.bounds().extent();
+  const double height = field.height_bound(), thickness = std::min({e.x, e.y, e.z});
+  if (pieces < kTorn || height < 0.25 * thickness) return;
+  job.say(fmt::format(
+      "note: {} pieces: the layers are up to {:.3g} {} high on a body that is {:.3g} thick with them; lower "
+      "their heights",
+      pieces, height, recipe.length_unit, thickness));
 }
 
 // A mesh to be made: what was asked for, and what was found out about it.
@@ -204,7 +218,8 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
     write_height_map(job, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty())
     write_feature_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
-  summarize_mesh(job, region, made.statistics, report);
+  summarize_mesh(job, recipe, region, made.statistics, report);
+  if (!region.is_cut()) question_pieces(job, field, recipe, report.components);
   if (has_colors(recipe)) {
     job.summary["vertex_colors"] = format.has_colors;
     if (!format.has_colors) {
@@ -314,7 +329,8 @@ FieldRegion region_on_surface(Job& job, const Recipe& recipe, const fs::path& fi
     }
     job.say(fmt::format(
         "patch: no surface crosses this cube; moved by {:.4g} {} to {:.9g} {:.9g} {:.9g} on the surface",
-        norm(*beside - region.center), recipe.length_unit, beside->x, beside->y, beside->z));
+        norm(*beside - region.center), recipe.length_unit, recipe.origin.x + beside->x,
+        recipe.origin.y + beside->y, recipe.origin.z + beside->z));
     region.center = *beside;
   }
 }
@@ -323,8 +339,9 @@ FieldRegion region_on_surface(Job& job, const Recipe& recipe, const fs::path& fi
 
 void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                const fs::path& output) {
-  const Region asked = region_of(request);
+  Region asked = region_of(request);
   check_request(request, asked, recipe, file);
+  if (asked.is_patch) asked.center = asked.center - recipe.origin;
   const auto [region, field] = region_on_surface(job, recipe, file, asked);
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),
                     recipe.erosion.has_value(),

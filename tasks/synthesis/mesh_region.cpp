@@ -195,9 +195,9 @@ void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& 
                     region.is_patch ? "" : ", or raise the resolution"));
   }
   if (region.is_patch) {
-    const Vec3d p = nearby_surface_point(field, region.center);
+    const Vec3d p = recipe.origin + nearby_surface_point(field, region.center);
     throw InputError(fmt::format(
-        "patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+        "patch: no surface crosses this cube; there is some near {} {} {}", p.x, p.y, p.z));
   }
   if (region.is_cut()) {
     throw InputError(fmt::format("tile: no surface lies in tile {} of {}; take another",

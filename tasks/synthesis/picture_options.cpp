@@ -127,6 +127,16 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
   return made;
 }
 
+bool PictureOptions::chooses_view(const Job& job) {
+  return job.options.option("--camera").count() + job.options.option("--view").count() > 0;
+}
+
+bool PictureOptions::chooses_sun(const Job& job) {
+  return job.options.option("--sun").count() + job.options.option("--sun-body").count() +
+             job.options.option("--phase").count() >
+         0;
+}
+
 void PictureOptions::look_from(const Vec3d& direction) {
   cameras.clear();
   views = {{direction.x, direction.y, direction.z}};

@@ -35,7 +35,7 @@ struct PictureOptions {
   // without colours.
   PreviewOptions options(const Job& job, const TriangleMesh& mesh, const std::string& unit) const;
 
-  // Looks from one direction under one sun instead, each where it is given.
+  // Looks from one direction under one sun instead.
   void look_from(const Vec3d& direction);
   void light_from(const Vec3d& direction);
 
@@ -43,6 +43,9 @@ struct PictureOptions {
   void write(const Job& job, const RenderedPicture& picture, const std::filesystem::path& file) const;
 
   bool has_pinholes() const;
+  // Whether an option says from where to look, or where the sun stands.
+  static bool chooses_view(const Job& job);
+  static bool chooses_sun(const Job& job);
 };
 
 }  // namespace astrolith

@@ -1,6 +1,7 @@
 // fit_shape: a mesh becomes a recipe.
 #include "tasks/estimation/fit_shape.h"
 
+#include "geometry/io/mesh_io.h"
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
 #include "tests/support/data.h"
@@ -39,6 +40,19 @@ GaborLayer gravel_layer() {
   gravel.height_rms = 0.2;
   gravel.lobes.push_back({4, 0.1, 0.05, 0.04});
   return gravel;
+}
+
+// A boulder of 30 m in the frame of its asteroid, 16.5 km from the middle.
+TEST_F(FitShape, ABodyFarFromTheOriginOfItsFrameGetsAnOriginOfItsOwn) {
+  TriangleMesh boulder = read_mesh(folder_ / "egg.obj");
+  for (Vec3d& p : boulder.vertices) p = Vec3d{16.5, 0, 0} + 0.01 * p;
+  write_mesh(boulder, folder_ / "boulder.obj", {});
+  const std::string said = succeed("boulder.obj -o far.json --spheres 12 --points 400 --base-only --summary s.json");
+  EXPECT_TRUE(has(said, "the recipe has an origin of its own, 16.5 0 0 km"));
+  EXPECT_LT(json("s.json")["mean_distance"], 0.02);
+  const Recipe far = recipe("far.json");
+  EXPECT_TRUE(far.origin == (Vec3d{16.5, 0, 0}));
+  for (const Sphere& s : far.body->spheres) EXPECT_LT(norm(s.center), 0.05);
 }
 
 TEST_F(FitShape, WritesARecipeWithABody) {

@@ -46,6 +46,15 @@ class SynthMembers : public SynthTest {
   }
 };
 
+TEST_F(SynthMembers, OptionsOfTheCameraWinOverTheFamily) {
+  const std::string picture = "--preview set/{member}.png --picture-size 32x32 ";
+  expect_made(make("0:1", picture), "1 made");
+  EXPECT_TRUE(manifest().at(0).contains("view"));
+  const std::string others = "--preview other/{member}.png --picture-size 32x32 --view 0 0 1";
+  expect_made(make("0:1", others, "other"), "1 made");
+  EXPECT_FALSE(manifest("other").at(0).contains("view"));
+}
+
 TEST_F(SynthMembers, EachHasFilesAndALine) {
   expect_made(make("3:5", "--preview set/{member}.png --write-recipe set/{member}.json"),
               "2 made, 0 already there, 0 failed, of 2");
