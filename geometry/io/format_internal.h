@@ -2,6 +2,7 @@
 // files about themselves, and one reader and one writer for each format.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,7 @@ namespace astrolith {
 struct MeshFile {
   std::filesystem::path path;
   std::string bytes;
+  std::string label = {};  // of the Planetary Data System, from in front of the data
 
   // Throws InputError("FILE: place: what; remedy"). An empty place is left out.
   [[noreturn]] void fail(std::string_view place, std::string_view what, std::string_view remedy) const;
@@ -37,13 +39,26 @@ std::string quoted(std::string_view piece);
 // Vertex indices have 32 bits, in TriangleMesh and in every binary format.
 inline constexpr std::int64_t kMaxVertices = std::int64_t{0xffffffff};
 
-// Splits a polygon into a fan of triangles around its first corner. This is exact for convex polygons, which
-// are what shape models have.
-inline void append_fan(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
-  }
-}
+// Splits a quadrilateral into two triangles along its shorter diagonal.
+void append_quad(const std::vector<Vec3d>& points, const std::array<std::uint32_t, 4>& corners,
+                 std::vector<Triangle>& out);
+
+// The polygons of a file. They become fans around their first corners while the file is read. Those that such
+// a fan does not cover are cut by their ears once all vertices are known: a face may stand before its
+// vertices.
+class PolygonFans {
+ public:
+  void append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles);
+  // Throws InputError for a polygon that is not convex and has more than kMostConcaveCorners. Passes over
+  // polygons with indices out of range.
+  void cut_concave(const MeshFile& file, TriangleMesh& mesh) const;
+
+ private:
+  struct Fan {
+    std::size_t first, count;  // triangles
+  };
+  std::vector<Fan> fans_;  // of four corners and more
+};
 
 // Reads the file by the format that its name and its content tell. Throws InputError when the extension names
 // one format and the content is clearly another, and when neither tells the format.
@@ -58,6 +73,9 @@ TriangleMesh read_off(const MeshFile& file);
 TriangleMesh read_plate(const MeshFile& file);
 TriangleMesh read_icq(const MeshFile& file);
 TriangleMesh read_bmf(const MeshFile& file);
+// A table of latitude, longitude and radius.
+TriangleMesh read_grid_table(const MeshFile& file);
+bool is_grid_table(const MeshFile& file);
 
 // Writers rely on what write_mesh has checked: at least one triangle, indices in range, and coordinates that
 // float32 can hold.

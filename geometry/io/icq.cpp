@@ -104,18 +104,6 @@ DisjointSets join_edges(const MeshFile& file, const CubeGrid& grid, const Triang
   return classes;
 }
 
-// Splits a quadrilateral into two triangles along its shorter diagonal.
-void append_quad(const std::vector<Vec3d>& points, const std::array<std::uint32_t, 4>& q,
-                 std::vector<Triangle>& out) {
-  if (squared_norm(points[q[2]] - points[q[0]]) <= squared_norm(points[q[3]] - points[q[1]])) {
-    out.push_back({q[0], q[1], q[2]});
-    out.push_back({q[0], q[2], q[3]});
-  } else {
-    out.push_back({q[0], q[1], q[3]});
-    out.push_back({q[1], q[2], q[3]});
-  }
-}
-
 void append_quads(const CubeGrid& grid, TriangleMesh& mesh) {
   mesh.triangles.reserve(2 * std::size_t{kFaces} * grid.q() * grid.q());
   for (std::uint32_t face = 0; face < kFaces; ++face) {

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "geometry/io/format_internal.h"
+#include "geometry/io/pds_label_internal.h"
 #include "numerics/files/input_file.h"
 #include "numerics/files/zstd_stream.h"
 
@@ -28,10 +29,24 @@ void unpack(MeshFile& file) {
   }
 }
 
+// Whether the bytes begin as UTF-16 in either byte order: every other one of them is zero.
+bool is_utf16(std::string_view bytes) {
+  constexpr std::size_t kSeen = 16;
+  for (const std::string_view mark : {"\xff\xfe", "\xfe\xff"}) {
+    if (bytes.starts_with(mark)) bytes.remove_prefix(mark.size());
+  }
+  const auto is_zero = [&](std::size_t k) { return bytes[k] == '\0'; };
+  if (bytes.size() < kSeen || is_zero(0) == is_zero(1)) return false;
+  for (std::size_t k = 2; k < kSeen; ++k) {
+    if (is_zero(k) != is_zero(k % 2)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 MeshFile load_mesh_file(const std::filesystem::path& path) {
-  MeshFile file{path, {}};
+  MeshFile file{path, {}, {}};
   require_plain_file(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) file.fail("", std::string("cannot be read (") + std::strerror(errno) + ")", "check its rights");
@@ -40,6 +55,8 @@ MeshFile load_mesh_file(const std::filesystem::path& path) {
   if (in.bad()) file.fail("", "reading failed", "copy it to another disk");
   file.bytes.resize(static_cast<std::size_t>(in.gcount()));
   if (is_zstd(file.bytes)) unpack(file);
+  if (is_utf16(file.bytes)) file.fail("", "its text is UTF-16", "save it as UTF-8 or ASCII");
+  blank_label(file);
   return file;
 }
 

@@ -14,27 +14,62 @@
 namespace astrolith {
 namespace {
 
-struct Signature {
+struct OtherFile {
   std::string_view start;
   const char* name;
+  const char* remedy = nullptr;  // null: give a mesh
 };
 
+constexpr const char* kUnpack = "unpack it first";
+constexpr const char* kExport = "open it in its program, and export it as .ply, .obj or .stl";
+constexpr const char* kOfPlates = "export its plates: dskexp -dsk FILE -text FILE.tab -format 1 (NAIF)";
+
 // Files of other kinds that users hand over by mistake.
-constexpr Signature kOtherFiles[] = {
+constexpr OtherFile kOtherFiles[] = {
     {"\x89PNG", "a PNG picture"},
     {"\xff\xd8\xff", "a JPEG picture"},
-    {"glTF", "a glTF file"},
-    {"PK\x03\x04", "a zip archive"},
-    {"\x1f\x8b", "a gzip archive"},
-    {"BZh", "a bzip2 archive"},
-    {"\xfd\x37zXZ", "an xz archive"},
+    {"glTF", "a glTF file", kExport},
+    {"PK\x03\x04", "a zip archive", kUnpack},
+    {"\x1f\x8b", "a gzip archive", kUnpack},
+    {"BZh", "a bzip2 archive", kUnpack},
+    {"\xfd\x37zXZ", "an xz archive", kUnpack},
+    {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", kUnpack},
+    {"Rar!\x1a", "a RAR archive", kUnpack},
     {"II*", "a TIFF picture"},
+    {std::string_view("MM\0*", 4), "a TIFF picture"},
     {"%PDF", "a PDF"},
+    {"<?xml", "XML, such as a label or a scene",
+     "give the file that a label names, or export a scene as .ply"},
     {"<", "HTML or XML"},
     {"{", "JSON"},
-    {"NAIF/DSK", "a SPICE DSK"},
+    {"NAIF/DSK", "a SPICE DSK", kOfPlates},
+    {"DAS/DSK", "a SPICE DSK", kOfPlates},
+    {"DAF/DSK", "a SPICE DSK", kOfPlates},
     {"DAS/", "a SPICE DAS"},
-    {"version https://git-lfs", "a Git LFS pointer"},
+    {"DAF/", "a SPICE DAF"},
+    {"KPL/", "a SPICE text kernel"},
+    {"Object = IsisCube", "an ISIS cube"},
+    {"SIMPLE  =", "a FITS file"},
+    {"\x89HDF", "an HDF5 file"},
+    {"CDF\x01", "a NetCDF file"},
+    {"CDF\x02", "a NetCDF file"},
+    {"\x93NUMPY", "a NumPy array", "give it to Python's astrolith.Mesh"},
+    {"ISO-10303-21", "a STEP file", "export it as triangles, .stl or .ply, from a CAD program"},
+    {"Kaydara FBX", "an FBX scene", kExport},
+    {"; FBX", "an FBX scene", kExport},
+    {"BLENDER", "a scene of Blender", kExport},
+    {"#VRML", "a VRML scene", kExport},
+    {"PXR-USDC", "a USD scene", kExport},
+    {"#usda", "a USD scene", kExport},
+    {"Ogawa", "an Alembic scene", kExport},
+    {"DRACO", "a Draco mesh", kExport},
+    {"xof ", "a DirectX scene", kExport},
+    {"# vtk DataFile", "a VTK file", kExport},
+    {"# .PCD", "a point cloud of PCL", "convert it by pcl_pcd2ply"},
+    {"LASF", "a LAS point cloud", "convert it to .ply"},
+    {"ASTM-E57", "an E57 point cloud", "convert it to .ply"},
+    {"\xd0\xcf\x11\xe0", "a document of Microsoft Office", "save its table as .csv"},
+    {"version https://git-lfs", "a Git LFS pointer", "fetch the file itself: git lfs pull"},
 };
 
 // A binary STL has 80 bytes, a count and 50 bytes for each triangle. Files of other formats do not have
@@ -58,10 +93,23 @@ int count_numbers(TextScanner& scan) {
   return count;
 }
 
+std::string_view first_word(TextScanner& scan) { return scan.next_filled_line() ? scan.word() : ""; }
+
 bool is_ply(const MeshFile& file) {
-  return file.bytes.starts_with("ply\n") || file.bytes.starts_with("ply\r");
+  TextScanner scan(file);
+  return scan.next_line() && scan.word() == "ply" && scan.line_done();
 }
-bool is_ascii_stl(const MeshFile& file) { return file.bytes.starts_with("solid"); }
+
+// A binary STL may begin with "solid", too. Coordinates and attributes then soon give control characters.
+bool is_text(std::string_view start) {
+  return std::none_of(start.begin(), start.end(), [](char c) { return (c >= '\0' && c < '\t') || c == 127; });
+}
+bool is_ascii_stl(const MeshFile& file) {
+  constexpr std::size_t kStart = 4096;
+  TextScanner scan(file);
+  return lower_case(first_word(scan)).starts_with("solid") &&
+         is_text(std::string_view(file.bytes).substr(0, kStart));
+}
 
 // How many numbers stand on the first two filled lines. An ICQ states Q and goes on with "x y z". A plate
 // model states its count (or both counts) and goes on with "i x y z", after both counts perhaps with "x y z".
@@ -82,7 +130,6 @@ bool is_plate(const MeshFile& file) {
   return ((first == 1 || first == 2) && second == 4) || (first == 2 && second == 3);
 }
 
-std::string_view first_word(TextScanner& scan) { return scan.next_filled_line() ? scan.word() : ""; }
 bool is_obj(const MeshFile& file) {
   static constexpr std::string_view kWords[] = {"v", "vn", "vt",     "vp",     "f",
                                                 "o", "g",  "mtllib", "usemtl", "s"};
@@ -120,7 +167,7 @@ constexpr MeshFormat kFormats[] = {
      .file_bytes = 50.0},
     {.name = "ascii STL", .extensions = {".stl"}, .has = is_ascii_stl, .reader = read_stl_ascii},
     {.name = "PDS plate model",
-     .extensions = {".tab", ".plt", ".txt"},
+     .extensions = {".tab", ".plt", ".txt", ".ver"},
      .has = is_plate,
      .reader = read_plate,
      .writer = write_plate,
@@ -138,6 +185,10 @@ constexpr MeshFormat kFormats[] = {
      .writer = write_obj,
      .tells_unit = true},
     {.name = "OFF", .extensions = {".off"}, .has = is_off, .reader = read_off},
+    {.name = "table of radii",
+     .extensions = {".tab", ".plt", ".txt"},
+     .has = is_grid_table,
+     .reader = read_grid_table},
     {.name = "BMF", .extensions = {".bmf"}, .has = never, .reader = read_bmf},
     {.name = "glTF",
      .extensions = {".glb"},
@@ -173,18 +224,20 @@ std::string extensions_with(Member MeshFormat::*member, bool with_words) {
 
 std::string remedy() { return "give a mesh (" + read_mesh_words() + ")"; }
 
-[[noreturn]] void fail_unknown(const MeshFile& file) {
-  for (const Signature& other : kOtherFiles) {
-    if (file.bytes.starts_with(other.start)) {
-      file.fail("byte 0", std::string("the content is ") + other.name, remedy());
-    }
-  }
-  file.fail("byte 0", "neither name nor content tells a mesh format", remedy());
+// The kind of another file that the content begins as; null where it begins as none.
+const OtherFile* other_file(const MeshFile& file) {
+  const auto* const kind =
+      std::find_if(std::begin(kOtherFiles), std::end(kOtherFiles),
+                   [&](const OtherFile& other) { return file.bytes.starts_with(other.start); });
+  return kind == std::end(kOtherFiles) ? nullptr : kind;
 }
 
-bool is_other_file(const MeshFile& file) {
-  return std::any_of(std::begin(kOtherFiles), std::end(kOtherFiles),
-                     [&](const Signature& other) { return file.bytes.starts_with(other.start); });
+[[noreturn]] void fail_unknown(const MeshFile& file) {
+  const OtherFile* const other = other_file(file);
+  if (other == nullptr) file.fail("byte 0", "neither name nor content tells a mesh format", remedy());
+  if (file.bytes.find("3D/3dmodel.model") != file.bytes.npos) file.fail("", "is a 3MF scene", kExport);
+  file.fail("byte 0", std::string("the content is ") + other->name,
+            other->remedy == nullptr ? remedy() : other->remedy);
 }
 
 }  // namespace
@@ -198,7 +251,7 @@ TriangleMesh read_content(const MeshFile& file) {
                                  [&](const MeshFormat& f) { return f.has(file); });
   const bool is_named = named != std::end(kFormats);
   if (seen == std::end(kFormats)) {
-    if (!is_named || is_other_file(file)) fail_unknown(file);
+    if (!is_named || other_file(file) != nullptr) fail_unknown(file);
     return named->reader(file);
   }
   if (is_named && !may_end_in(*seen, extension)) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/io/mesh_format.h"
@@ -17,10 +18,15 @@ namespace astrolith {
 // - .stl: ascii and binary; corners at the same coordinates become one vertex
 // - .off: with or without colours and normals
 // - .tab .plt .txt: PDS plate model with rows "i x y z" and "i a b c", with rows "x y z" and "a b c" below
-//   both counts in one line, or with rows "v x y z" and "f a b c"
+//   both counts in one line, or with rows "v x y z" and "f a b c"; the number of corners may stand before
+//   each plate (.ver)
 // - .icq (or .tab .plt .txt): Gaskell's implicitly connected quadrilaterals; the faces' edges are merged
+// - tables of latitude, longitude and radius on a regular grid, poles closed; in degrees, longitudes to the
+// east
+//   unless a name or a label says west
 // - .bmf: bodies of OpenUniverse, in kilometres; welded, with one winding of each triangle
-// For any other extension the content decides. Polygons become fans. Lengths stay in the file's unit.
+// For any other extension the content decides. Polygons become triangles: fans around their first corners, or
+// ears where a fan would leave a polygon that is not convex. Lengths stay in the file's unit.
 //
 // The mesh has coordinates of at most 1e18, at least one face and every index in range; it need not be
 // closed. Throws InputError ("FILE: line 7: what is wrong; what to do"). The size of the file bounds the
@@ -56,15 +62,32 @@ struct MeshFileInfo {
 // cannot hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
-// The unit in the comment "length unit: km" that write_mesh() writes in front of a .ply, .obj or .stl, .zst
-// or not. Any word of up to 8 letters is one. Empty where the file states none or cannot be read. Looks at
-// the first 4,096 bytes of the content only.
-std::string stated_length_unit(const std::filesystem::path& file);
+// What a file says of the unit of its lengths.
+struct StatedUnit {
+  std::string unit;             // "m", "km", ...; empty where nothing states one
+  std::filesystem::path label;  // the label that states it; empty where the file does
+};
 
-// Reads one point a line: x, y and z, separated by commas or blanks; what follows them is ignored. Empty
-// lines, lines that begin with # and one line of column names at the start are skipped. Throws InputError
-// ("FILE: line 7: what is wrong; what to do") for a file without points and for numbers that are missing or
-// not finite. The size of the file bounds the memory used.
+// The unit that a comment states, such as "length unit: km" of write_mesh() (any word of up to 8 letters) or
+// "# Units: meters", or the names of a table's columns, or a PDS3 label in front; else a label beside the
+// file, of the same name with .lbl or .xml, that names the file (PDS3's UNIT, PDS4's <unit>). Looks at the
+// first 4,096 bytes of a mesh, and the first 256 kB of a label. Never throws for a file that cannot be read.
+StatedUnit stated_unit(const std::filesystem::path& file);
+inline std::string stated_length_unit(const std::filesystem::path& file) { return stated_unit(file).unit; }
+
+struct PointTable {
+  std::vector<Vec3d> points;
+  std::string words;  // which columns are taken, by their names, and which are left out; empty without names
+};
+
+// Reads one point a line. A first line, or a comment before the first row, may name the columns: x, y, z, or
+// latitude, longitude and radius, with units as in x_km, x[m] or "x (km)", among others. Lengths come in
+// `unit` where the names state one and it is not empty; else as they are. Without names a line holds x, y and
+// z, and in an .xyz more, which is ignored. Commas, semicolons, tabs or blanks separate columns. Empty lines
+// and comments (#, %, !) are skipped. Throws InputError ("FILE: line 7: what is wrong; what to do") for a
+// file without points, for other names and widths, and for numbers that are missing or not finite. The size
+// of the file bounds the memory used.
+PointTable read_point_table(const std::filesystem::path& file, std::string_view unit);
 std::vector<Vec3d> read_points(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -39,8 +39,9 @@ std::string line_of(const Triangle& triangle, bool with_normals) {
 
 TriangleMesh read_obj(const MeshFile& file) {
   TriangleMesh mesh;
-  TextScanner scan(file);
+  TextScanner scan(file, true);
   std::vector<std::uint32_t> polygon;
+  PolygonFans fans;
   while (scan.next_filled_line()) {
     const std::string_view keyword = scan.word();
     if (keyword == "v") {
@@ -50,14 +51,13 @@ TriangleMesh read_obj(const MeshFile& file) {
       while (!scan.line_done()) {
         const std::string_view corner = scan.word();
         if (corner.front() == '#') break;
-        // A backslash at the end of a line continues the face on the next one.
-        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;
         polygon.push_back(corner_index(scan, corner, mesh.vertices.size()));
       }
       if (polygon.size() < 3) scan.fail("the face has fewer than three vertices", "remove or complete it");
-      append_fan(polygon, mesh.triangles);
+      fans.append(polygon, mesh.triangles);
     }
   }
+  fans.cut_concave(file, mesh);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 // Plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", numbered from
-// 1. The first line may state both counts, and rows may lack their numbers. (Models with rows "v x y z" and
-// "f a b c" are read as OBJ.)
+// 1. The first line may state both counts, and rows may lack their numbers. The number of corners may stand
+// before each plate, on the line above or the same: type 4 of NAIF's MKDSK, .ver. (Models with rows "v x y z"
+// and "f a b c" are read as OBJ.)
 #include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
@@ -17,10 +18,9 @@ std::size_t checked_count(const TextScanner& scan, std::int64_t count, const cha
   return static_cast<std::size_t>(count);
 }
 
-// Goes to row i (counted from 1) of a table and, where rows are numbered, reads the number at its start. The
-// first row tells: one of three words has no number.
+// Reads the number at the start of row i (counted from 1) of a table where rows are numbered. The first row
+// tells: one of three words has no number.
 void start_row(TextScanner& scan, std::size_t i, const char* what, bool& numbered) {
-  if (!scan.next_filled_line()) scan.fail_truncated(std::string(what) + " " + std::to_string(i));
   if (i == 1) numbered = scan.words_left() != 3;
   if (!numbered) return;
   const std::int64_t stated = scan.integer("row number");
@@ -41,6 +41,44 @@ std::uint32_t vertex_index(TextScanner& scan, std::size_t num_vertices) {
   return static_cast<std::uint32_t>(number - 1);
 }
 
+// Whether plates have the number of their corners before them. The scanner stands on the line of the first.
+bool counts_corners(TextScanner scan) {
+  const std::size_t words = scan.words_left();
+  const std::int64_t first = scan.integer("plate");
+  return words == 1 || (first > 2 && words == static_cast<std::size_t>(first) + 1);
+}
+
+// A plate on the lines from the scanner's on.
+void read_counted_plate(TextScanner& scan, std::size_t num_vertices, std::vector<std::uint32_t>& corners) {
+  const std::int64_t count = scan.integer("number of corners");
+  if (count < 3) scan.fail("a plate has " + std::to_string(count) + " corners", "give it three or more");
+  corners.clear();
+  for (std::int64_t k = 0; k < count; ++k) {
+    if (scan.line_done() && !scan.next_filled_line()) scan.fail_truncated("a plate's corner");
+    corners.push_back(vertex_index(scan, num_vertices));
+  }
+}
+
+// Reads the plates from the line behind the scanner's on.
+void read_plates(TextScanner& scan, std::size_t count, const MeshFile& file, TriangleMesh& mesh) {
+  bool numbered = true, counted = false;
+  std::vector<std::uint32_t> corners;
+  PolygonFans fans;
+  for (std::size_t i = 1; i <= count; ++i) {
+    if (!scan.next_filled_line()) scan.fail_truncated("plate " + std::to_string(i));
+    if (i == 1) counted = counts_corners(scan);
+    if (counted) {
+      read_counted_plate(scan, mesh.vertices.size(), corners);
+    } else {
+      start_row(scan, i, "plate", numbered);
+      corners.assign(3, 0);
+      for (std::uint32_t& corner : corners) corner = vertex_index(scan, mesh.vertices.size());
+    }
+    fans.append(corners, mesh.triangles);
+  }
+  fans.cut_concave(file, mesh);
+}
+
 }  // namespace
 
 TriangleMesh read_plate(const MeshFile& file) {
@@ -52,6 +90,7 @@ TriangleMesh read_plate(const MeshFile& file) {
   mesh.vertices.reserve(num_vertices);
   bool numbered = true;
   for (std::size_t i = 1; i <= num_vertices; ++i) {
+    if (!scan.next_filled_line()) scan.fail_truncated("vertex " + std::to_string(i));
     start_row(scan, i, "vertex", numbered);
     mesh.vertices.push_back(scan.point());
   }
@@ -61,11 +100,7 @@ TriangleMesh read_plate(const MeshFile& file) {
   }
   const std::size_t plates = checked_count(scan, num_plates, "plates");
   mesh.triangles.reserve(plates);
-  for (std::size_t i = 1; i <= plates; ++i) {
-    start_row(scan, i, "plate", numbered);
-    Triangle& t = mesh.triangles.emplace_back();
-    for (std::uint32_t& corner : t) corner = vertex_index(scan, num_vertices);
-  }
+  read_plates(scan, plates, file, mesh);
   return mesh;
 }
 

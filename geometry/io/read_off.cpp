@@ -51,14 +51,16 @@ TriangleMesh read_off(const MeshFile& file) {
     mesh.vertices.push_back(scan.point());
   }
   std::vector<std::uint32_t> polygon;
+  PolygonFans fans;
   for (std::size_t i = 0; i < num_faces; ++i) {
     if (!scan.next_filled_line()) scan.fail_truncated("a face");
     polygon.clear();
     for (std::int64_t corners = scan.integer("number of corners"); corners > 0; --corners) {
       polygon.push_back(index(scan));
     }
-    append_fan(polygon, mesh.triangles);
+    fans.append(polygon, mesh.triangles);
   }
+  fans.cut_concave(file, mesh);
   return mesh;
 }
 

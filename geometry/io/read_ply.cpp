@@ -149,14 +149,14 @@ void read_polygon(Source& source, const PlyProperty& list, std::vector<std::uint
 }
 
 template <typename Source>
-void read_faces(Source& source, const PlyElement& element, TriangleMesh& mesh) {
+void read_faces(Source& source, const PlyElement& element, TriangleMesh& mesh, PolygonFans& fans) {
   mesh.triangles.reserve(element.count);
   std::vector<std::uint32_t> polygon;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) {
       if (property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index")) {
         read_polygon(source, property, polygon);
-        append_fan(polygon, mesh.triangles);
+        fans.append(polygon, mesh.triangles);
       } else {
         skip_property(source, property);
       }
@@ -165,7 +165,7 @@ void read_faces(Source& source, const PlyElement& element, TriangleMesh& mesh) {
 }
 
 template <typename Source>
-TriangleMesh read_body(Source&& source, const PlyHeader& header, VertexValues& wanted) {
+TriangleMesh read_body(Source&& source, const PlyHeader& header, VertexValues& wanted, PolygonFans& fans) {
   TriangleMesh mesh;
   for (const PlyElement& element : header.elements) {
     if (element.properties.empty()) continue;  // rows without properties take no bytes
@@ -173,7 +173,7 @@ TriangleMesh read_body(Source&& source, const PlyHeader& header, VertexValues& w
     if (element.name == "vertex" && mesh.vertices.empty()) {
       read_vertices(source, element, mesh, wanted);
     } else if (element.name == "face" && mesh.triangles.empty()) {
-      read_faces(source, element, mesh);
+      read_faces(source, element, mesh, fans);
     } else {
       for (std::uint64_t i = 0; i < element.count; ++i) {
         for (const PlyProperty& property : element.properties) skip_property(source, property);
@@ -194,8 +194,12 @@ bool all_unit(const std::vector<Vec3d>& normals) {
 TriangleMesh read_after(const PlyHeader& header, const MeshFile& file, TextScanner& scan,
                         VertexValues& wanted) {
   const std::size_t offset = file.bytes.size() - scan.bytes_left();
-  return header.ascii ? read_body(TextSource(scan), header, wanted)
-                      : read_body(BinarySource(file, offset, header.order), header, wanted);
+  PolygonFans fans;
+  TriangleMesh mesh = header.ascii
+                          ? read_body(TextSource(scan), header, wanted, fans)
+                          : read_body(BinarySource(file, offset, header.order), header, wanted, fans);
+  fans.cut_concave(file, mesh);
+  return mesh;
 }
 
 // The properties of the vertices that are single numbers, for messages.

@@ -1,33 +1,79 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "geometry/io/format_internal.h"
-#include "geometry/io/text_scanner_internal.h"
+#include "geometry/io/named_table_internal.h"
+#include "numerics/length_unit.h"
 
 namespace astrolith {
+namespace {
+
+constexpr double kLargestCoordinate = 1e18;
+
+TableLayout layout_of(const NamedTable& table, const MeshFile& file) {
+  if (table.layout()) return *table.layout();
+  if (!table.unknown_names().empty()) {
+    table.fail("the first line " + quoted(table.unknown_names()) +
+                   " names no x, y, z and no latitude, longitude, radius",
+               "name the columns so, such as id,x_km,y_km,z_km, or give lines of x y z");
+  }
+  TableLayout layout;
+  // Clouds of points in .xyz have normals or colours behind their coordinates, and no names.
+  layout.width = mesh_extension(file.path) == ".xyz" ? 0 : 3;
+  return layout;
+}
+
+// What a length of the table is to be multiplied with.
+double scale_to(const TableLayout& layout, std::string_view unit, const NamedTable& table) {
+  if (layout.unit.empty()) return 1.0;
+  if (!has_known_length(layout.unit))
+    table.fail("the columns state lengths in " + astrolith::quoted(layout.unit), "convert them to m or km");
+  return unit.empty() ? 1.0 : metres_of(layout.unit) / metres_of(unit);
+}
+
+void require_width(const NamedTable& table, const TableLayout& layout) {
+  if (table.width() == layout.width || (layout.width == 0 && table.width() >= 3)) return;
+  const bool named = !layout.words.empty();
+  table.fail("has " + std::to_string(table.width()) + " columns where " +
+                 std::to_string(layout.width == 0 ? 3 : layout.width) +
+                 (named ? " are named" : " (x, y, z) are due"),
+             named || table.width() < 3 ? "complete the line"
+                                        : "name the columns in a first line, such as id,x,y,z");
+}
+
+Vec3d place_in(const NamedTable& table, const TableLayout& layout) {
+  const auto& [first, second, third] = layout.columns;
+  if (!layout.spherical) {
+    const double x = table.number(first, "x"), y = table.number(second, "y"), z = table.number(third, "z");
+    return {x, y, z};
+  }
+  const double latitude = layout.radians * table.number(first, "latitude"),
+               longitude = layout.radians * table.number(second, "longitude");
+  if (std::fabs(latitude) > 1.5707963267949) table.fail("the latitude is beyond a pole", "correct the line");
+  return place_of(latitude, layout.west ? -longitude : longitude, table.number(third, "radius"));
+}
+
+}  // namespace
+
+PointTable read_point_table(const std::filesystem::path& file, std::string_view unit) {
+  const MeshFile content = load_mesh_file(file);
+  NamedTable table(content);
+  const TableLayout layout = layout_of(table, content);
+  const double scale = scale_to(layout, unit, table);
+  PointTable points{{}, layout.words};
+  while (table.next_row()) {
+    require_width(table, layout);
+    const Vec3d p = scale * place_in(table, layout);
+    for (const double c : {p.x, p.y, p.z}) {
+      if (!(std::fabs(c) <= kLargestCoordinate))
+        table.fail("a coordinate is beyond 1e18", "state lengths in a larger unit");
+    }
+    points.points.push_back(p);
+  }
+  if (points.points.empty()) content.fail("", "holds no points", "give lines of x, y and z");
+  return points;
+}
 
 std::vector<Vec3d> read_points(const std::filesystem::path& file) {
-  MeshFile content = load_mesh_file(file);
-  std::replace(content.bytes.begin(), content.bytes.end(), ',', ' ');
-  TextScanner scan(content);
-  std::vector<Vec3d> points;
-  bool names_may_come = true;
-  while (scan.next_filled_line()) {
-    const std::string_view first = scan.word();
-    if (names_may_come && !parse_number(first)) {
-      names_may_come = false;
-      continue;
-    }
-    names_may_come = false;
-    const double x = scan.to_number(first, "x"), y = scan.number("y"), z = scan.number("z");
-    for (const double c : {x, y, z}) {
-      if (!(std::fabs(c) <= 1e18)) scan.fail("a coordinate is beyond 1e18", "state lengths in a larger unit");
-    }
-    points.push_back({x, y, z});
-  }
-  if (points.empty()) content.fail("", "holds no points", "give lines of x, y and z");
-  return points;
+  return read_point_table(file, "").points;
 }
 
 }  // namespace astrolith

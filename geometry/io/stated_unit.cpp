@@ -4,54 +4,87 @@
 #include <system_error>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/named_table_internal.h"
+#include "geometry/io/pds_label_internal.h"
 #include "numerics/files/zstd_stream.h"
+#include "numerics/length_unit.h"
 
 namespace astrolith {
 namespace {
 
 constexpr std::size_t kMostHeader = 4096, kLongestUnit = 8;
-// More than the first block of a Zstandard frame takes (RFC 8878: at most 128 kB).
-constexpr std::size_t kMostPacked = std::size_t{1} << 18;
+// More than the first block of a Zstandard frame takes (RFC 8878: at most 128 kB), and than labels take.
+constexpr std::size_t kMostRead = std::size_t{1} << 18;
 
 // The beginning of the file's content; empty for what is no plain file.
-std::string header_of(const std::filesystem::path& file) {
+std::string start_of(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
   std::ifstream in(file, std::ios::binary);
-  std::string bytes(kMostPacked, '\0');
+  std::string bytes(kMostRead, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
-  if (is_zstd(bytes)) return unpack_zstd_start(bytes, kMostHeader);
-  bytes.resize(std::min(bytes.size(), kMostHeader));
-  return bytes;
+  return is_zstd(bytes) ? unpack_zstd_start(bytes, kMostHeader) : bytes;
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// The unit of one line of a header; empty where the line states none.
-std::string_view unit_of_line(std::string_view line) {
-  constexpr std::string_view kLabel = "length unit: ";
-  for (const std::string_view start : {"comment ", "# ", "Binary STL; "}) {
-    if (!line.starts_with(start) || !line.substr(start.size()).starts_with(kLabel)) continue;
-    const std::string_view rest = line.substr(start.size() + kLabel.size());
-    const auto end = std::find_if_not(rest.begin(), rest.end(), is_letter);
-    const std::string_view unit = rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
-    return unit.size() <= kLongestUnit ? unit : std::string_view();
+std::string_view first_letters(std::string_view text) {
+  const auto end = std::find_if_not(text.begin(), text.end(), is_letter);
+  return text.substr(0, static_cast<std::size_t>(end - text.begin()));
+}
+
+// The comment in a line of a header; empty where it is none.
+std::string_view comment_of(std::string_view line) {
+  for (const std::string_view start : {"comment ", "obj_info ", "# ", "#", "//", "%", "Binary STL; "}) {
+    if (line.starts_with(start)) return line.substr(start.size());
   }
   return {};
 }
 
-}  // namespace
-
-std::string stated_length_unit(const std::filesystem::path& file) {
-  const std::string header = header_of(file);
-  for (std::string_view rest = header; !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size() - 1);
-    if (const std::string_view unit = unit_of_line(rest.substr(0, end + 1)); !unit.empty())
-      return std::string(unit);
-    rest.remove_prefix(end + 1);
+// The known unit of lengths that words such as "Units: meters", "unit = km" or "all lengths in km" state.
+std::string unit_in_words(std::string_view comment) {
+  const std::string lower = lower_case(comment);
+  for (const std::string_view mark :
+       {"unit:", "units:", "unit =", "units =", "unit=", "units=", "unit is ", "units are ",
+        "coordinates in ", "vertices in ", "lengths in ", "distances in ", "coordinates are in ",
+        "vertices are in ", "lengths are in ", "units of "}) {
+    const std::size_t at = lower.find(mark);
+    if (at == lower.npos || (at > 0 && is_letter(lower[at - 1]))) continue;
+    std::string_view rest = std::string_view(lower).substr(at + mark.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t(['\""), rest.size()));
+    if (const std::string unit = short_unit(first_letters(rest)); has_known_length(unit)) return unit;
   }
   return {};
+}
+
+// The unit that a line of a header states; empty where it states none.
+std::string unit_of_line(std::string_view line) {
+  constexpr std::string_view kLabel = "length unit: ";  // of write_mesh()
+  const std::string_view comment = comment_of(line);
+  if (comment.starts_with(kLabel)) {
+    const std::string_view unit = first_letters(comment.substr(kLabel.size()));
+    if (!unit.empty() && unit.size() <= kLongestUnit) return std::string(unit);
+  }
+  if (std::string unit = unit_in_words(comment); !unit.empty()) return unit;
+  const std::optional<TableLayout> columns = named_layout(comment.empty() ? line : comment);
+  return columns && has_known_length(columns->unit) ? columns->unit : std::string();
+}
+
+}  // namespace
+
+StatedUnit stated_unit(const std::filesystem::path& file) {
+  const std::string start = start_of(file);
+  if (begins_pds3_label(start)) return {unit_in_label(start), {}};
+  for (std::string_view rest = std::string_view(start).substr(0, kMostHeader); !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of("\n\r"), rest.size());
+    if (std::string unit = unit_of_line(rest.substr(0, end)); !unit.empty()) return {std::move(unit), {}};
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  LabelBeside label = label_beside(file);
+  std::string unit = unit_in_label(label.text);
+  if (unit.empty()) return {};
+  return {std::move(unit), std::move(label.path)};
 }
 
 }  // namespace astrolith

@@ -11,6 +11,9 @@
 namespace astrolith {
 namespace {
 
+constexpr std::size_t kFacetBytes = 50;
+constexpr std::uint32_t kMostFacets = 0xffffffffu / 3;
+
 void add_corner_triangle(TriangleMesh& mesh) {
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.triangles.push_back({n - 3, n - 2, n - 1});
@@ -23,6 +26,31 @@ TriangleMesh share_vertices(TriangleMesh mesh) {
   return mesh;
 }
 
+// The next keyword of the line in lower case, "end solid" as "endsolid"; empty at the line's end. Programs
+// write keywords in either case.
+std::string stl_keyword(TextScanner& scan) {
+  std::string word = lower_case(scan.word());
+  return word == "end" ? word + lower_case(scan.word()) : word;
+}
+
+// The number of triangles that a binary file declares. Programs that write while they compute leave 0 or the
+// largest number: then it follows from the size. Bytes behind the triangles are passed over, but not
+// triangles.
+std::uint32_t count_of_triangles(ByteReader& bytes) {
+  auto count = bytes.read<std::uint32_t>("the number of triangles");
+  const std::size_t held = bytes.bytes_left() / kFacetBytes;
+  const bool whole = bytes.bytes_left() % kFacetBytes == 0;
+  if (whole && held <= kMostFacets && (count == 0 || count == 0xffffffffu))
+    count = static_cast<std::uint32_t>(held);
+  if (whole && held > count) {
+    bytes.fail(std::to_string(count) + " triangles are declared, but " + std::to_string(held) + " follow",
+               "correct the count in bytes 80 to 83");
+  }
+  bytes.need_rows(count, kFacetBytes, "triangles");
+  if (count > kMostFacets) bytes.fail("more corners than 2^32", "write it as .ply");
+  return count;
+}
+
 }  // namespace
 
 TriangleMesh read_stl_ascii(const MeshFile& file) {
@@ -30,17 +58,20 @@ TriangleMesh read_stl_ascii(const MeshFile& file) {
   TextScanner scan(file);
   std::size_t corners = 0;
   bool complete = false;
-  while (scan.next_line()) {
-    const std::string_view word = scan.word();
-    if (word == "vertex") {
-      mesh.vertices.push_back(scan.point());
-      ++corners;
-    } else if (word == "endloop") {
-      if (corners != 3) scan.fail("the facet has " + std::to_string(corners) + " vertices", "give it three");
-      add_corner_triangle(mesh);
-      corners = 0;
+  while (scan.next_filled_line()) {
+    for (std::string keyword = stl_keyword(scan); !keyword.empty(); keyword = stl_keyword(scan)) {
+      complete = keyword == "endsolid";
+      if (complete || keyword == "solid") break;  // a name follows
+      if (keyword == "vertex") {
+        mesh.vertices.push_back(scan.point());
+        ++corners;
+      } else if (keyword == "endloop") {
+        if (corners != 3)
+          scan.fail("the facet has " + std::to_string(corners) + " vertices", "give it three");
+        add_corner_triangle(mesh);
+        corners = 0;
+      }
     }
-    if (!word.empty()) complete = word == "endsolid";
   }
   if (!complete) scan.fail_truncated("'endsolid'");
   return share_vertices(std::move(mesh));
@@ -50,9 +81,7 @@ TriangleMesh read_stl_binary(const MeshFile& file) {
   TriangleMesh mesh;
   ByteReader bytes(file);
   bytes.skip(80, "the header");
-  const auto count = bytes.read<std::uint32_t>("the number of triangles");
-  bytes.need_rows(count, 50, "triangles");
-  if (count > 0xffffffffu / 3) bytes.fail("more corners than 2^32", "write it as .ply");
+  const std::uint32_t count = count_of_triangles(bytes);
   mesh.vertices.reserve(std::size_t{3} * count);
   mesh.triangles.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -1,4 +1,5 @@
-// Reads a text file line by line and, in each line, word by word. Blanks separate words.
+// Reads a text file line by line and, in each line, word by word. Blanks separate words, and so do commas and
+// semicolons. A line ends in a line feed, a carriage return or both.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +15,32 @@ namespace astrolith {
 // infinity, and a word that is no number gives nothing. The words nan and inf count as numbers here.
 std::optional<double> parse_number(std::string_view word);
 
+// The word with A to Z as a to z.
+std::string lower_case(std::string_view word);
+
 //   TextScanner scan(file);
 //   while (scan.next_line()) { if (scan.word() == "v") x = scan.number("x"); }
 class TextScanner {
  public:
-  // Skips a byte order mark at the start of the file.
-  explicit TextScanner(const MeshFile& file) : file_(file), rest_(file.bytes) {
+  // Skips a byte order mark at the start of the file. With `joins_lines`, a backslash at the end of a line
+  // behind a blank or a digit means that the line goes on below. (The name of a folder may end in one, too.)
+  explicit TextScanner(const MeshFile& file, bool joins_lines = false)
+      : file_(file), rest_(file.bytes), joins_lines_(joins_lines) {
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
   }
 
-  // Goes to the next line and drops the carriage return before its line feed. False at the end of the file.
+  // Goes to the next line. False at the end of the file.
   bool next_line();
   // Goes to the next line that holds a word and is no comment. False at the end of the file.
   bool next_filled_line(char comment = '#');
 
-  // The next word of the line; empty at its end.
+  // The next word of the line; empty at its end. Throws InputError in a line whose numbers have decimal
+  // commas.
   std::string_view word();
   // The next word, on this line or a following one; empty at the end of the file.
   std::string_view word_anywhere();
+  // The whole line. Throws InputError where its numbers have decimal commas.
+  std::string_view whole_line();
   // The number of words from here to the end of the line.
   std::size_t words_left() const;
   // True when the line has no more words.
@@ -57,10 +66,20 @@ class TextScanner {
   [[noreturn]] void fail_truncated(std::string_view wanted) const;
 
  private:
+  // Goes to the next line of the file, which may go on another.
+  bool next_piece();
+  void refuse_decimal_commas();
+
   const MeshFile& file_;
   std::string_view rest_;
-  std::string_view line_;
+  std::string_view line_, whole_line_;
+  // Bytes from the next line feed to the file's end; 0 where none follows.
+  std::size_t feed_from_end_ = std::string_view::npos;
   std::int64_t line_number_ = 0;
+  bool joins_lines_;
+  bool goes_on_ = false;           // the line goes on below
+  bool ends_in_returns_ = false;   // the first line ends in a carriage return alone
+  bool commas_were_seen_ = false;  // in this line: it is looked at once
 };
 
 }  // namespace astrolith

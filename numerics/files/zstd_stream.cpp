@@ -1,7 +1,9 @@
 #include "numerics/files/zstd_stream.h"
 
 #include <zstd.h>
+#include <zstd_errors.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <new>
@@ -63,26 +65,27 @@ void pack_zstd(std::FILE* plain, OutputFile& packed) {
 }
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
-  const auto unpacker = make_unpacker();
-  std::string content;
-  std::vector<char> out(kPiece);
-  ZSTD_inBuffer input{packed.data(), packed.size(), 0};
-  std::size_t left = 1;
-  while (left != 0 || input.pos < input.size) {
-    ZSTD_outBuffer output{out.data(), out.size(), 0};
-    left = ZSTD_decompressStream(unpacker.get(), &output, &input);
-    if (ZSTD_isError(left) != 0) {
-      throw InputError(std::string("is damaged (zstd: ") + ZSTD_getErrorName(left) + "); copy it again");
+  // Into one piece of memory, which needs none of the frame's window beside it: a few bytes may declare 8 MB.
+  constexpr std::uint64_t kLikelyGrowth = 8;
+  const auto unpacker = made(std::unique_ptr<ZSTD_DCtx, FreeUnpacker>(ZSTD_createDCtx()));
+  for (std::uint64_t room = kLikelyGrowth * packed.size();; room *= 2) {
+    std::string content(std::min(room, most_bytes), '\0');
+    const std::size_t size =
+        ZSTD_decompressDCtx(unpacker.get(), content.data(), content.size(), packed.data(), packed.size());
+    if (ZSTD_isError(size) == 0 && !packed.empty()) {
+      content.resize(size);
+      return content;
     }
-    if (content.size() + output.pos > most_bytes) {
+    const ZSTD_ErrorCode error = ZSTD_getErrorCode(size);
+    if (error == ZSTD_error_srcSize_wrong || packed.empty())
+      throw InputError("is damaged (zstd: it ends too early); copy it again");
+    if (error != ZSTD_error_dstSize_tooSmall)
+      throw InputError(std::string("is damaged (zstd: ") + ZSTD_getErrorName(size) + "); copy it again");
+    if (room >= most_bytes) {
       throw InputError("unpacks to more than " + std::to_string(most_bytes) +
                        " bytes; unpack it with zstd -d first");
     }
-    content.append(out.data(), output.pos);
-    const bool starved = output.pos < output.size && input.pos == input.size;
-    if (left != 0 && starved) throw InputError("is damaged (zstd: it ends too early); copy it again");
   }
-  return content;
 }
 
 std::string unpack_zstd_start(std::string_view packed, std::size_t bytes) {

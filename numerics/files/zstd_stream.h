@@ -19,8 +19,8 @@ bool is_zstd(std::string_view bytes);
 void pack_zstd(std::FILE* plain, OutputFile& packed);
 
 // The content of a compressed file. Throws InputError, without a file's name, for bytes that are not
-// Zstandard, end too early or need a window above 8 MB, and for content above `most_bytes`, which is never
-// held: a small file can unpack to any size.
+// Zstandard or end too early, and for content above `most_bytes`, which is never held: a small file can
+// unpack to any size. Memory is the content, at most doubled, and some .1 MB.
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes);
 
 // The first `bytes` bytes of the content of a file of which `packed` is the beginning; fewer where `packed`

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -92,12 +93,25 @@ TriangleMesh read_shape(Job& job, const CompareArguments& arguments, const std::
   return arguments.repair.mended_surface(job, arguments.repair.read(file), file, figures);
 }
 
+// Says so where B is many times larger or smaller than A: distances are then of the sizes alone.
+void say_factor(const Job& job, const CompareArguments& arguments, const TriangleMesh& a,
+                const TriangleMesh& b) {
+  constexpr double kMany = 10.0, kUnits = 1000.0, kNear = 1.1;
+  const double factor = b.bounds().diagonal() / a.bounds().diagonal(),
+               times = std::fmax(factor, 1.0 / factor);
+  if (!(times >= kMany) || !std::isfinite(times)) return;
+  const bool as_units = times > kUnits / kNear && times < kUnits * kNear;
+  job.say(fmt::format(
+      "note: {}: its length is {:.4g} times that of {}{}; scale one where the sizes do not matter",
+      arguments.b, factor, arguments.a, as_units ? ", as of meshes in metres and in kilometres" : ""));
+}
+
 // The unit of A, "" where it is unknown. Scales B to it, or says that the units differ where the length of
 // one is not known.
 std::string one_unit(const Job& job, const CompareArguments& arguments, TriangleMesh& b) {
   const UnitChoice choice{arguments.unit, ""};
-  const std::string of_a = unit_of_mesh(job, arguments.a, choice, {});
-  const std::string of_b = unit_of_mesh(job, arguments.b, choice, {});
+  const std::string of_a = unit_of_mesh(job, arguments.a, choice, {}).name;
+  const std::string of_b = unit_of_mesh(job, arguments.b, choice, {}).name;
   if (of_a.empty() || of_b.empty() || of_a == of_b) return of_a;
   if (!has_known_length(of_a) || !has_known_length(of_b)) {
     job.say(fmt::format("note: {}: is in {}, and {} in {}; nothing was scaled", arguments.b, of_b,
@@ -119,6 +133,7 @@ void run_compare(Job& job, const CompareArguments& arguments) {
   const TriangleMesh a = read_shape(job, arguments, arguments.a, repair_of_a);
   TriangleMesh b = read_shape(job, arguments, arguments.b, repair_of_b);
   const std::string unit = one_unit(job, arguments, b);
+  say_factor(job, arguments, a, b);
   const DescriptionOptions options = arguments.options.with_seed(job.seed);
   nlohmann::ordered_json result{{"a", arguments.a},
                                 {"b", arguments.b},

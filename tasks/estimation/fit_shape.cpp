@@ -149,12 +149,13 @@ void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& 
 void say_size(const Job& job, const FitArguments& arguments, const TargetBody& target) {
   Box box;
   for (const Vec3d& vertex : target.mesh.vertices) box.extend(target.diagonal * vertex);
-  job.say(arguments.mesh + ": " + size_words(box.extent(), arguments.unit));
+  job.say(arguments.mesh + ": " + size_words(box.extent(), arguments.unit) +
+          (arguments.unit_assumed ? ", where no unit is stated; --unit says another" : ""));
 }
 
 void question_unit(const Job& job, const FitArguments& arguments, const TargetBody& target) {
   const double volume = target.volume * std::pow(target.diagonal, 3);
-  const std::string asked = unit_question(arguments.mesh, volume, metres_of(arguments.unit));
+  const std::string asked = unit_question(arguments.mesh, volume, {arguments.unit, arguments.unit_assumed});
   if (!asked.empty()) job.say(asked);
 }
 

@@ -18,7 +18,8 @@ struct FitArguments {
   std::string output, report, checkpoint;  // empty: none
   std::string mesh_sha256;                 // of the file as it was read, or of the mesh in memory
   std::string optimizer = "pso";
-  std::string unit;         // of the mesh, once settled
+  std::string unit;  // of the mesh, once settled
+  bool unit_assumed = false;
   double time_limit = 0.0;  // seconds; 0 = none
   int noise_seeds = 3;      // of the verdict on the surface; 0 = no verdict
   bool packing_only = false;

@@ -138,7 +138,11 @@ void declare_fit_options(Job& job, FitArguments& arguments) {
 
 void settle_fit_options(const Job& job, FitArguments& arguments) {
   arguments.fit.seed = job.seed;
-  if (!arguments.in_memory) arguments.unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
+  if (!arguments.in_memory) {
+    const MeshUnit unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
+    arguments.unit = unit.name;
+    arguments.unit_assumed = unit.assumed;
+  }
   arguments.fit.length_unit = arguments.unit;
   if (arguments.bytes > 0 && !arguments.details.base_only && !arguments.details.keeps_relief()) {
     throw InputError(

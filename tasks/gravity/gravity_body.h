@@ -10,9 +10,10 @@
 namespace astrolith {
 
 struct GravityBody {
-  TriangleMesh mesh;    // closed, counter-clockwise from outside
-  std::string unit;     // of its coordinates
-  double metres = 1.0;  // per unit
+  TriangleMesh mesh;            // closed, counter-clockwise from outside
+  std::string unit;             // of its coordinates
+  double metres = 1.0;          // per unit
+  std::string unit_words = {};  // what is to be said of an assumed unit; empty for a stated one
 };
 
 // The body of a mesh whose coordinates are in `unit`: "m", "km", "cm" or "mm". `name` is what messages call

@@ -14,17 +14,20 @@ namespace astrolith {
 GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file, const UnitChoice& unit,
                               int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures) {
   if (!is_recipe_name(file)) {
-    const std::string stated = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
+    const MeshUnit length_unit = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
     // Edges of four facets, two each way, are no trouble for gravity.
     const MeshTopology topology = analyze_topology(mesh);
     const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0;
     if (!touches) {
-      mesh = repair.closed_body(job, std::move(mesh), file.string(), stated, repair.options(), figures);
+      mesh = repair.closed_body(job, std::move(mesh), file.string(), length_unit.name, repair.options(),
+                                figures);
     }
-    GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
-    if (const std::string asked = unit_question(file, volume(body.mesh), body.metres); !asked.empty())
-      job.say(asked);
+    GravityBody body = body_of_mesh(std::move(mesh), length_unit.name, file.string());
+    const std::string asked = unit_question(file, volume(body.mesh), length_unit);
+    if (!asked.empty()) job.say(asked);
+    if (asked.empty() && length_unit.assumed)
+      body.unit_words = assumed_unit_words(file.string(), length_unit.name);
     return body;
   }
   const Recipe recipe = load_recipe(file);

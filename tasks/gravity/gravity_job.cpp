@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
@@ -65,7 +66,10 @@ void add_options(Job& job, Arguments& a) {
   a.repair.add_to(app);
   app.add_option("--at", a.at, "places: centres of facets, or vertices")
       .check(one_of({"facets", "vertices"}));
-  app.add_option("--points", a.points, "places: lines of x, y, z in the body's unit, inside or outside")
+  app.add_option(
+         "--points", a.points,
+         "places, inside or outside: lines of x, y, z in the body's unit, or a table whose first line "
+         "names its columns, such as id,x_km,y_km,z_km or lat,lon,radius")
       .placeholder("FILE")
       .reads();
   app.add_option("--tolerance", a.tolerance, "bound of the error of each acceleration, relative")
@@ -128,9 +132,11 @@ void check(const Job& job, const Arguments& a) {
   }
 }
 
-GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
-  if (!a.points.empty()) return {read_points(a.points), {}, {}, "points"};
-  return a.at == "vertices" ? vertex_places(mesh) : facet_places(mesh);
+GravityPlaces places_of(const Job& job, const Arguments& a, const GravityBody& body) {
+  if (a.points.empty()) return a.at == "vertices" ? vertex_places(body.mesh) : facet_places(body.mesh);
+  PointTable table = read_point_table(a.points, body.unit);
+  if (!table.words.empty()) job.say("note: " + a.points + ": " + table.words);
+  return {std::move(table.points), {}, {}, "points"};
 }
 
 void print(Job& job, const nlohmann::ordered_json& result) {
@@ -159,7 +165,7 @@ void run(Job& job, const Arguments& a) {
   check(job, a);
   nlohmann::ordered_json repair;
   const GravityBody body = read_gravity_body(job, a.shape, {a.unit}, a.resolution, a.repair, repair);
-  const GravityPlaces places = places_of(a, body.mesh);
+  const GravityPlaces places = places_of(job, a, body);
   const ComputedGravity made = compute_gravity(body, places, options_of(job, a, body),
                                                [&](const std::string& stage) { return job.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
@@ -167,6 +173,7 @@ void run(Job& job, const Arguments& a) {
   if (!repair.is_null()) result["repair"] = repair;
   const std::vector<LandingSite> sites = landing_sites(job, a.sites, a.shape, body, made.columns, result);
   write_outputs(job, a, body, made.columns, sites);
+  if (!body.unit_words.empty()) job.say(body.unit_words);
   print(job, result);
   job.summary = result;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
@@ -32,6 +33,20 @@ void write_list(const nlohmann::ordered_json& sites, const std::filesystem::path
     text += "\n";
   }
   write_file(file, text);
+}
+
+// Where a slope exceeds 90 degrees the ground is above what would lie on it: the body turns too fast.
+void say_if_nothing_stays(const Job& job, const GravityBody& body, const std::vector<double>& slopes) {
+  double steep = 0.0, whole = 0.0;
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    const double area = triangle_area(body.mesh, body.mesh.triangles[i]);
+    whole += area;
+    if (slopes[i] > 90.0) steep += area;
+  }
+  if (steep == 0.0) return;
+  job.say(fmt::format(
+      "note: slopes exceed 90 degrees on {:.3g} % of the ground: at this period nothing stays there",
+      100.0 * steep / whole));
 }
 
 }  // namespace
@@ -77,8 +92,10 @@ std::vector<LandingSite> landing_sites(Job& job, const SitesRequest& request, co
   if (request.count == 0) return {};
   const auto slopes = std::find_if(columns.begin(), columns.end(),
                                    [](const GravityColumn& column) { return column.name == "slope_deg"; });
+  say_if_nothing_stays(job, body, slopes->values);
   const SiteSearch search{request.count, request.side, distance_of(request)};
   std::vector<LandingSite> sites = find_landing_sites(body, slopes->values, search, job.progress("sites"));
+  std::erase_if(sites, [](const LandingSite& site) { return site.mean_slope > 90.0; });
   figures["sites"] = sites_json(sites, body);
   const std::string recipe = is_recipe_name(shape) ? shape : "RECIPE.json";  // of a measured mesh, its fit
   for (std::size_t i = 0; i < sites.size(); ++i) {

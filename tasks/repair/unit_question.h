@@ -1,5 +1,6 @@
-// Asks about the unit of a mesh whose size is far from the size of its body, or of any small body. A body is
-// recognised by the name that the file's name begins with; its radius tells metres from kilometres.
+// Says which unit a mesh was taken in where nothing states one, and asks about the unit of a mesh whose size
+// is far from the size of its body, or of any small body. A body is recognised by the name that the file's
+// name begins with; its radius tells metres from kilometres.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +15,9 @@
 #include <string>
 #include <string_view>
 
+#include "numerics/length_unit.h"
 #include "numerics/portable_double.h"
+#include "tasks/repair/mesh_unit.h"
 
 namespace astrolith {
 
@@ -50,21 +53,38 @@ inline std::optional<KnownBody> known_body(std::string_view file_name) {
 }
 
 // A question where a mesh of this volume, in cubic units, is not of the size of the body that its file is
-// named after, or larger or smaller than any small body; else empty. `metres_per_unit` is 1 or 1000.
-inline std::string unit_question(const std::filesystem::path& file, double volume, double metres_per_unit) {
+// named after, or larger or smaller than any small body, or where an assumed unit makes it larger than most;
+// else empty. Rocks in cm and mm may be of any size.
+inline std::string unit_question(const std::filesystem::path& file, double volume, const MeshUnit& unit) {
   constexpr double kClearlyWrong = 30.0, kLargest = 600.0, kSmallest = 0.00025;  // km: Ceres has 470
-  const double radius =
-      portable::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
+  constexpr double kLargerThanMost = 30.0;  // km: shape models of some ten asteroids and of large moons
+  const double size = portable::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi));
+  const double radius = size * metres_of(unit.name) / 1000.0;
+  const std::string name = file.string();
   const auto asked = [&](const std::string& is_not) {
     return fmt::format("note: {}: a mean radius of {:.4g} km is {}; is --unit {} right, or the mesh scaled?",
-                       file.string(), radius, is_not, metres_per_unit == 1.0 ? "m" : "km");
+                       name, radius, is_not, unit.name);
   };
   if (const std::optional<KnownBody> body = known_body(file.filename().string())) {
-    if (radius < kClearlyWrong * body->radius && body->radius < kClearlyWrong * radius) return {};
-    return asked(fmt::format("not that of {} ({:.4g} km)", body->name, body->radius));
+    if (radius >= kClearlyWrong * body->radius || body->radius >= kClearlyWrong * radius)
+      return asked(fmt::format("not that of {} ({:.4g} km)", body->name, body->radius));
+  } else if (radius > kLargest) {
+    return asked("above that of any asteroid or comet");
+  } else if (unit.assumed && radius > kLargerThanMost) {
+    return fmt::format(
+        "note: {}: states no unit and is taken in {}, which makes its mean radius {:.4g} km; in m it is "
+        "{:.4g} m: "
+        "add --unit m or --unit {}",
+        name, unit.name, radius, size, unit.name);
+  } else if (radius < kSmallest && (unit.name == "m" || unit.name == "km")) {
+    return asked("below that of any asteroid known");
   }
-  if (radius > kLargest) return asked("above that of any asteroid or comet");
-  return radius < kSmallest ? asked("below that of any asteroid known") : std::string();
+  return {};
+}
+
+// What a program says where it has assumed a unit.
+inline std::string assumed_unit_words(const std::string& name, const std::string& unit) {
+  return fmt::format("note: {}: states no unit and is taken in {}; --unit says another", name, unit);
 }
 
 }  // namespace astrolith

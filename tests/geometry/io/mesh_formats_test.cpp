@@ -199,6 +199,21 @@ TEST_F(MeshFormats, PlateModelWithoutRowNumbers) {
   EXPECT_TRUE((read("a.tab", "4 1\n" + rows + "1 1 3 2\n").triangles == Triangles{{0, 2, 1}}));
 }
 
+// Type 4 of NAIF's MKDSK, and the number of corners on the plate's own line.
+TEST_F(MeshFormats, PlatesBehindTheNumberOfTheirCorners) {
+  const std::string vertices = " 4 2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  for (const char* plates :
+       {"3\n 1 3 2\n3\n 1 2 4\n", "3 1 3 2\n3 1 2 4\n", "3\n1\n3 2\n\n# next\n3\n1 2 4\n"}) {
+    for (const char* name : {"phobos.ver", "phobos.tab"})
+      EXPECT_TRUE((read(name, vertices + plates).triangles == Triangles{{0, 2, 1}, {0, 1, 3}})) << plates;
+  }
+  const std::string quads = "4 1\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  EXPECT_EQ(read("a.ver", quads + "4\n1 2 3 4\n").triangles.size(), 2u);
+  EXPECT_EQ(read("a.ver", quads + "4 1 2 3 4\n").triangles.size(), 2u);
+  EXPECT_THROW(read("a.ver", quads + "4\n1 2 3\n"), InputError);
+  EXPECT_THROW(read("a.ver", quads + "2\n1 2\n"), InputError);
+}
+
 TEST_F(MeshFormats, PlateModelWithLetters) {
   const TriangleMesh mesh = read("kw4a.tab", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_TRUE((mesh.triangles == Triangles{{0, 1, 2}}));

@@ -77,7 +77,9 @@ INSTANTIATE_TEST_SUITE_P(EveryFormat, MeshFuzz,
                          ::testing::Values("obj/tetrahedron.obj", "obj/polygons.obj", "ply/ascii.ply",
                                            "ply/little.ply", "ply/big.ply", "stl_binary/binary.stl",
                                            "stl_ascii/ascii.stl", "off/plain.off", "plate/one_count.tab",
-                                           "icq/cube_1.icq", "bmf/tetrahedron.bmf"));
+                                           "icq/cube_1.icq", "bmf/tetrahedron.bmf", "plate/type_4.ver",
+                                           "grid_table/plain.tab", "grid_table/named.csv",
+                                           "grid_table/labelled.tab"));
 
 }  // namespace
 }  // namespace astrolith

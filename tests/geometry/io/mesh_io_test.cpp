@@ -151,13 +151,50 @@ TEST(StatedUnit, OfOtherFilesIsEmpty) {
   EXPECT_EQ(unit_in(""), "");
   EXPECT_EQ(unit_in("# length unit: "), "");
   EXPECT_EQ(unit_in("length unit: km\n"), "");
-  EXPECT_EQ(unit_in("# the length unit: km\n"), "");
+  EXPECT_EQ(unit_in("# the subunit: km\n"), "");
+  EXPECT_EQ(unit_in("# Units: parsecs\n"), "");
+  EXPECT_EQ(unit_in("# 642 vertices in mesh\n"), "");
   EXPECT_EQ(unit_in("# length unit: parsecmillionths\n"), "");
   EXPECT_EQ(unit_in("# length unit: m\xff\n"), "m");
   EXPECT_EQ(unit_in("# length unit: km"), "km");
   EXPECT_EQ(unit_in("v 0 0 0\r\n# length unit: m\r\n"), "m");
   EXPECT_EQ(unit_in(std::string(4096, '\n') + "# length unit: m\n"), "");
   EXPECT_EQ(unit_in(std::string("\x28\xb5\x2f\xfd", 4) + "# length unit: m\n"), "");
+}
+
+TEST(StatedUnit, InCommentsOfOtherPrograms) {
+  const ScratchFolder folder;
+  for (const auto& [text, unit] : {std::pair{"# Units: meters\nv 0 0 0\n", "m"},
+                                   {"#units = km\n", "km"},
+                                   {"# Asteroid X\r# UNIT: Kilometres\r", "km"},
+                                   {"ply\ncomment units: (mm)\n", "mm"},
+                                   {"// all lengths in cm\n", "cm"},
+                                   {"# Vertices are in metres, body-fixed\n", "m"},
+                                   {"# length unit: km, body-fixed\n", "km"},
+                                   {"lat,lon,radius_km\n", "km"},
+                                   {"# x, y, z (m)\n", "m"}})
+    EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
+}
+
+TEST(StatedUnit, InLabelsOfThePds) {
+  const ScratchFolder folder;
+  const std::string columns =
+      "OBJECT = COLUMN\r\nNAME = LATITUDE\r\nUNIT = DEGREE\r\nEND_OBJECT\r\nOBJECT = COLUMN\r\nNAME = X\r\n"
+      "UNIT  = \"METER\"\r\nEND_OBJECT\r\n";
+  const std::filesystem::path table = folder.write("eros.tab", "1 2 3\n");
+  EXPECT_EQ(
+      stated_unit(folder.write("in.tab", "PDS_VERSION_ID = PDS3\r\n" + columns + "END\r\n1 2 3\n")).unit,
+      "m");
+  EXPECT_EQ(stated_unit(table).unit, "");
+  folder.write("eros.lbl", "PDS_VERSION_ID = PDS3\r\n^TABLE = \"OTHER.TAB\"\r\n" + columns + "END\r\n");
+  EXPECT_EQ(stated_unit(table).unit, "");
+  folder.write("eros.lbl", "PDS_VERSION_ID = PDS3\r\n^TABLE = \"EROS.TAB\"\r\n" + columns + "END\r\n");
+  EXPECT_EQ(stated_unit(table).unit, "m");
+  EXPECT_EQ(stated_unit(table).label, folder / "eros.lbl");
+  const std::filesystem::path new_table = folder.write("bennu.tab", "1 2 3\n");
+  folder.write("bennu.xml",
+               "<?xml version=\"1.0\"?><file_name>bennu.tab</file_name><unit>deg</unit>\n<unit>m</unit>");
+  EXPECT_EQ(stated_unit(new_table).unit, "m");
 }
 
 }  // namespace

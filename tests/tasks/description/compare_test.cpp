@@ -82,6 +82,17 @@ TEST_F(Compare, BringsBothToOneUnit) {
                   "m.obj: from m to km, the unit of km.obj"));
 }
 
+TEST_F(Compare, SaysTheFactorOfSizes) {
+  write("small.obj", testing::ellipsoid_obj(1, 2, 3, 15, 30));
+  write("metres.obj", testing::ellipsoid_obj(1000, 2000, 3000, 15, 30));
+  const std::string options = " -o c.json --points 300 --samples 500";
+  EXPECT_TRUE(
+      has(succeed("small.obj metres.obj" + options),
+          "note: metres.obj: its length is 1000 times that of small.obj, as of meshes in metres and in "
+          "kilometres; scale one"));
+  EXPECT_TRUE(has(succeed("metres.obj small.obj" + options), "its length is 0.001 times that of metres.obj"));
+}
+
 TEST_F(Compare, ScalesNothingWhereAUnitIsUnknown) {
   for (const std::string unit : {"m", "ft", "km"})
     write(unit + ".obj", "# length unit: " + unit + "\n" + ellipsoid_obj(1, 1, 1, 47, 96));

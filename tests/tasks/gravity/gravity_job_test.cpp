@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "geometry/io/mesh_io.h"
-#include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
 #include "tests/tasks/inputs.h"
 #include "tests/tasks/job_runner.h"
@@ -47,17 +46,27 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
   write_mesh(testing::two_spheres(2, 1, 2.5), folder_ / "two.ply", {});
   write("metres.obj", ellipsoid_obj(2000, 2000, 1500, 31, 64));
   write("bennu_v20.obj", ellipsoid_obj(280, 270, 250, 31, 64));
-  EXPECT_EQ(run("ball.obj --density 2670").errors, "");
+  write("rock.obj", "# Units: mm\n" + ellipsoid_obj(40, 30, 30, 31, 64));
+  write("long.obj", ellipsoid_obj(160, 150, 140, 31, 64));
+  write("huge.obj", ellipsoid_obj(2e9, 2e9, 2e9, 31, 64));
+  EXPECT_EQ(run("ball.obj --density 2670 --unit km").errors, "");
+  EXPECT_EQ(run("rock.obj --density 2670").errors, "");
+  EXPECT_EQ(run("long.obj --density 2670 --unit km").errors, "");
   EXPECT_EQ(run("metres.obj --density 2000 --unit m").errors, "");
   for (const auto& [line, words] : testing::Refusals{
            {"ball.obj --density 2.67",
             "a density of 2.67 kg/m^3 is that of no solid; for 2.67 g/cm^3 give 2670"},
            {"two.ply --density 2000", "two.ply: holds 2 bodies apart from one another, the largest is taken"},
-           {"two.ply --density 2000 --all-parts",
-            "two.ply: holds 2 bodies apart from one another, all are taken"},
+           {"two.ply --density 2000 --all-parts", "two.ply: holds 2 bodies apart from one another, all are taken"},
            {"metres.obj --density 2000",
             "note: metres.obj: a mean radius of 1815 km is above that of any asteroid or comet; is --unit "
             "km"},
+           {"ball.obj --density 2670",
+            "note: ball.obj: states no unit and is taken in km; --unit says another"},
+           {"long.obj --density 2000",
+            "is taken in km, which makes its mean radius 149.6 km; in m it is 149.6 m: add --unit m or "
+            "--unit km"},
+           {"huge.obj --density 2000 --unit mm", "above that of any asteroid or comet; is --unit mm right"},
            {"bennu_v20.obj --density 1190", "km is not that of bennu (0.245 km); is --unit km"}})
     EXPECT_TRUE(has(succeed(line), words));
 }
@@ -109,7 +118,7 @@ TEST_F(Gravity, OfABallThatTurns) {
 
 // A point far away, one at the centre, one on a vertex.
 TEST_F(Gravity, AtPointsOfAFile) {
-  write("p.csv", "x,y,z\n# far\n30,0,40\n\n0 0 0\n0, 0, 1, top\n");
+  write("p.csv", "x,y,z\n# far\n30,0,40\n\n0 0 0\n0, 0, 1\n");
   const auto result = gravity("ball.obj --density 1000 --unit m --points p.csv -o p_out.csv");
   const double mass = result["body"]["mass_kg"].get<double>();
   const auto rows = rows_of("p_out.csv");
@@ -119,6 +128,25 @@ TEST_F(Gravity, AtPointsOfAFile) {
   EXPECT_NEAR(rows[0][4] / (-kConstant * mass / 2500 * 0.6), 1, 1e-3);
   EXPECT_NEAR(rows[1][3] / (-1.5 * kConstant * mass), 1, 0.01);
   EXPECT_NEAR(rows[2][8] / (kConstant * mass), 1, 0.01);
+}
+
+// Columns have names, and lengths a unit of their own.
+TEST_F(Gravity, AtPointsOfNamedColumns) {
+  write("named.csv", "id,x_km,y_km,z_km\n7,0.03,0,0.04\n8,0,0,0.001\n");
+  write("plain.csv", "30 0 40\n0 0 1\n");
+  write("wide.csv", "7,30,0,40\n");
+  const std::string line = "ball.obj --density 1000 --unit m --points ";
+  const std::string said = succeed(line + "named.csv -o named_out.csv");
+  EXPECT_TRUE(
+      has(said, "note: named.csv: columns 'x_km', 'y_km', 'z_km' are taken as x, y, z in km; left out: 'id'"))
+      << said;
+  succeed(line + "plain.csv -o plain_out.csv");
+  const auto named = rows_of("named_out.csv"), plain = rows_of("plain_out.csv");
+  ASSERT_EQ(named.size(), 2u);
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    for (std::size_t c = 0; c < 9; ++c) EXPECT_NEAR(named[k][c], plain[k][c], 1e-12 * std::fabs(plain[k][c]));
+  }
+  refuse(line + "wide.csv", "wide.csv: line 1: has 4 columns where 3 (x, y, z) are due; name the columns");
 }
 
 TEST_F(Gravity, WritesValuesOfVerticesThatReadersSkip) {
@@ -247,10 +275,8 @@ TEST_F(Gravity, DamagedMeshesAreRepaired) {
 TEST_F(Gravity, PartsThatOverlapAreSaidAndUnited) {
   write_mesh(testing::two_spheres(4, 1, 1), folder_ / "lobes.ply", {});
   write_mesh(testing::joined(testing::icosphere(3), testing::icosphere(2, 0.5)), folder_ / "core.ply", {});
-  EXPECT_TRUE(
-      has(succeed("lobes.ply --density 2000"), "1 part reaches into a larger one: rock counts twice"));
-  EXPECT_TRUE(
-      has(succeed("core.ply --density 2000"), "1 part lies in the rock of a larger one: rock counts"));
+  EXPECT_TRUE(has(succeed("lobes.ply --density 2000"), "1 part reaches into a larger one: rock counts twice"));
+  EXPECT_TRUE(has(succeed("core.ply --density 2000"), "1 part lies in the rock of a larger one: rock counts"));
   const double ball = gravity("core.ply --density 2000 --union")["volume_m3"];
   EXPECT_NEAR(ball, 1e9 * volume(testing::icosphere(3)), 1.0);
   const double both = gravity("lobes.ply --density 2000")["volume_m3"];
@@ -263,8 +289,7 @@ TEST_F(Gravity, ARecipeWithAnOriginGivesItsFrameBack) {
   write("far.json", R"({"format_version": 1, "length_unit": "km", "origin": [16.5, 0, -2], "body":
     {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 0.03]]}})");
   write("place.csv", "16.6 0 -2\n");
-  const nlohmann::json figures =
-      gravity("far.json --density 2000 --resolution 32 --points place.csv -o g.csv");
+  const nlohmann::json figures = gravity("far.json --density 2000 --resolution 32 --points place.csv -o g.csv");
   EXPECT_NEAR(figures["center_of_mass_m"][0], 16500.0, 0.01);
   EXPECT_NEAR(figures["center_of_mass_m"][2], -2000.0, 0.01);
   const double mass = figures["mass_kg"];
@@ -299,6 +324,12 @@ TEST_F(Gravity, BadInputIsRefused) {
                                  {"ball.obj --points nan.csv", "nan.csv: line 2"},
                                  {"ball.obj --points few.csv", "few.csv: line 2"},
                                  {"ball.obj --points none.csv", "none.csv"}});
+}
+
+TEST_F(Gravity, SitesOfABodyThatTurnsTooFast) {
+  const std::string said = succeed("ball.obj --density 2000 --period 1 --sites 3 --site-size 0.4");
+  EXPECT_TRUE(has(said, "note: slopes exceed 90 degrees on ")) << said;
+  EXPECT_TRUE(has(said, "% of the ground: at this period nothing stays there")) << said;
 }
 
 // A ball at rest is level everywhere, but its ground below z = .4 is wavy here. A square of side L on a ball

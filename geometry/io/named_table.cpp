@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "geometry/io/named_table_internal.h"
+#include "numerics/portable_angles.h"
+
+namespace astrolith {
+
+std::string short_unit(std::string_view word) {
+  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"m", "m"},
+                                                                             {"meter", "m"},
+                                                                             {"meters", "m"},
+                                                                             {"metre", "m"},
+                                                                             {"metres", "m"},
+                                                                             {"km", "km"},
+                                                                             {"kilometer", "km"},
+                                                                             {"kilometers", "km"},
+                                                                             {"kilometre", "km"},
+                                                                             {"kilometres", "km"},
+                                                                             {"cm", "cm"},
+                                                                             {"centimeter", "cm"},
+                                                                             {"centimeters", "cm"},
+                                                                             {"mm", "mm"},
+                                                                             {"millimeter", "mm"},
+                                                                             {"millimeters", "mm"},
+                                                                             {"deg", "deg"},
+                                                                             {"degree", "deg"},
+                                                                             {"degrees", "deg"},
+                                                                             {"\xc2\xb0", "deg"},
+                                                                             {"rad", "rad"},
+                                                                             {"radian", "rad"},
+                                                                             {"radians", "rad"}};
+  for (const auto& [name, unit] : kUnits) {
+    if (name == word) return std::string(unit);
+  }
+  return {};
+}
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f", kComments = "#%!";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == text.npos) return {};
+  text = text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+  const bool in_quotes = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  return in_quotes ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
+// The fields of a line, without those that are empty at its end.
+void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  constexpr std::string_view kSeparators = ",;\t";
+  const auto* const separator =
+      std::find_if(kSeparators.begin(), kSeparators.end(), [&](char c) { return line.find(c) != line.npos; });
+  const bool by_blanks = separator == kSeparators.end();
+  while (!line.empty()) {
+    const std::size_t end =
+        std::min(by_blanks ? line.find_first_of(kBlanks) : line.find(*separator), line.size());
+    const std::string_view field = trimmed(line.substr(0, end));
+    if (!by_blanks || !field.empty()) fields.push_back(field);
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+}
+
+bool is_comment(std::string_view line) {
+  return !line.empty() && kComments.find(line.front()) != kComments.npos;
+}
+
+struct ColumnName {
+  std::string base, unit;  // in lower case; the unit may be any word in brackets
+};
+
+ColumnName parse_name(std::string_view field) {
+  const std::string name = lower_case(field);
+  if (const std::size_t open = name.find_first_of("(["); open != name.npos && open > 0) {
+    const std::string inside = name.substr(open + 1, name.find_first_of(")]", open) - open - 1);
+    const std::string unit = short_unit(trimmed(inside));
+    return {std::string(trimmed(std::string_view(name).substr(0, open))), unit.empty() ? inside : unit};
+  }
+  const std::size_t cut = name.find_last_of("_/ .");
+  if (cut != name.npos && cut > 0) {
+    if (const std::string unit = short_unit(std::string_view(name).substr(cut + 1)); !unit.empty())
+      return {name.substr(0, cut), unit};
+  }
+  return {name, {}};
+}
+
+// The names of columns in a line. Where blanks separate names, a unit in brackets belongs to the name before.
+std::vector<std::string> names_in(std::string_view line) {
+  std::vector<std::string_view> fields;
+  split_fields(line, fields);
+  std::vector<std::string> names;
+  for (const std::string_view field : fields) {
+    const bool is_unit = field.starts_with('(') || field.starts_with('[');
+    if (is_unit && !names.empty()) {
+      names.back().append(field);
+    } else {
+      names.emplace_back(field);
+    }
+  }
+  return names;
+}
+
+using Names = std::vector<std::string_view>;
+
+// The first column with one of the names; `columns.size()` where none has one.
+std::size_t find_column(const std::vector<ColumnName>& columns, const Names& names) {
+  for (const std::string_view name : names) {
+    const auto at =
+        std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.base == name; });
+    if (at != columns.end()) return static_cast<std::size_t>(at - columns.begin());
+  }
+  return columns.size();
+}
+
+bool find_columns(const std::vector<ColumnName>& columns, const std::array<Names, 3>& names,
+                  TableLayout& layout) {
+  for (std::size_t k = 0; k < 3; ++k) layout.columns[k] = find_column(columns, names[k]);
+  return *std::max_element(layout.columns.begin(), layout.columns.end()) < columns.size();
+}
+
+const Names kWest = {"west_longitude", "w_longitude", "longitude_w", "wlon",           "lon_w",
+                     "w_lon",          "west_lon",    "lonw",        "longitude west", "west longitude"};
+
+bool find_place(const std::vector<ColumnName>& columns, TableLayout& layout) {
+  for (const std::string_view stem :
+       {"", "pos_", "position_", "point_", "points_", "center_", "centre_", "vertex_", "coord_"}) {
+    const std::string s(stem), x = s + "x", y = s + "y", z = s + "z";
+    if (find_columns(columns, {Names{x}, Names{y}, Names{z}}, layout)) return true;
+  }
+  if (find_columns(columns, {Names{"points:0"}, Names{"points:1"}, Names{"points:2"}}, layout)) return true;
+  layout.spherical = true;
+  Names longitudes{"longitude",      "lon",         "long",        "lng",
+                   "east_longitude", "e_longitude", "longitude_e", "east longitude",
+                   "east_lon",       "elon",        "e_lon",       "lon_e"};
+  longitudes.insert(longitudes.end(), kWest.begin(), kWest.end());
+  return find_columns(columns, {Names{"latitude", "lat"}, longitudes, Names{"radius", "r"}}, layout);
+}
+
+// The unit of x, y and z. It may stand behind one of them only: "x, y, z (km)".
+std::string unit_of(const std::vector<ColumnName>& columns, const TableLayout& layout) {
+  std::string unit;
+  for (const std::size_t k : layout.columns) {
+    if (!unit.empty() && !columns[k].unit.empty() && columns[k].unit != unit) return "several units";
+    if (!columns[k].unit.empty()) unit = columns[k].unit;
+  }
+  return unit;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + astrolith::quoted(name);
+  return text;
+}
+
+std::string words_of(const std::vector<std::string>& names, const TableLayout& layout) {
+  std::vector<std::string> taken, left;
+  for (const std::size_t column : layout.columns) taken.push_back(names[column]);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (std::find(layout.columns.begin(), layout.columns.end(), k) == layout.columns.end() && left.size() < 6)
+      left.push_back(names[k]);
+  }
+  const bool more = names.size() > left.size() + 3;
+  return "columns " + joined(taken) + " are taken as " +
+         (!layout.spherical ? "x, y, z"
+          : layout.west     ? "latitude, west longitude, radius"
+                            : "latitude, longitude, radius") +
+         (layout.unit.empty() ? "" : " in " + layout.unit) +
+         (left.empty() ? "" : "; left out: " + joined(left) + (more ? ", ..." : ""));
+}
+
+}  // namespace
+
+std::optional<TableLayout> named_layout(std::string_view line) {
+  const std::vector<std::string> names = names_in(line);
+  std::vector<ColumnName> columns;
+  for (const std::string& name : names) columns.push_back(parse_name(name));
+  TableLayout layout;
+  if (!find_place(columns, layout)) return {};
+  layout.width = names.size();
+  layout.unit = layout.spherical ? columns[layout.columns[2]].unit : unit_of(columns, layout);
+  layout.radians = std::numbers::pi / 180.0;
+  if (layout.spherical) {
+    const ColumnName& longitude = columns[layout.columns[1]];
+    layout.west = std::find(kWest.begin(), kWest.end(), longitude.base) != kWest.end();
+    if (longitude.unit == "rad" || columns[layout.columns[0]].unit == "rad") layout.radians = 1.0;
+  }
+  layout.words = words_of(names, layout);
+  return layout;
+}
+
+Vec3d place_of(double latitude, double longitude, double radius) {
+  const portable::SineCosine lat = portable::sine_and_cosine(latitude),
+                             lon = portable::sine_and_cosine(longitude);
+  return radius * Vec3d{lat.cosine * lon.cosine, lat.cosine * lon.sine, lat.sine};
+}
+
+NamedTable::NamedTable(const MeshFile& file) : scan_(file) {
+  std::optional<TableLayout> in_comment;
+  while (scan_.next_line()) {
+    const std::string_view line = trimmed(scan_.whole_line());
+    if (is_comment(line)) {
+      const std::size_t text = std::min(line.find_first_not_of(kComments), line.size());
+      if (auto named = named_layout(line.substr(text))) in_comment = std::move(named);
+      continue;
+    }
+    split_fields(line, fields_);
+    if (fields_.empty()) continue;
+    layout_ = named_layout(line);
+    if (layout_) return;
+    if (in_comment && in_comment->width == fields_.size()) layout_ = std::move(in_comment);
+    at_first_row_ = layout_ || parse_number(fields_[0]);
+    if (!at_first_row_) unknown_names_ = line;
+    return;
+  }
+}
+
+bool NamedTable::next_row() {
+  if (std::exchange(at_first_row_, false)) return true;
+  while (scan_.next_line()) {
+    const std::string_view line = trimmed(scan_.whole_line());
+    if (is_comment(line)) continue;
+    split_fields(line.substr(0, line.find('#')), fields_);
+    if (!fields_.empty()) return true;
+  }
+  return false;
+}
+
+bool NamedTable::has_numbers(std::size_t width, const std::array<std::size_t, 3>& columns) const {
+  return fields_.size() == width && std::all_of(columns.begin(), columns.end(), [&](std::size_t k) {
+           const std::optional<double> value = parse_number(fields_[k]);
+           return value && std::isfinite(*value);
+         });
+}
+
+}  // namespace astrolith
