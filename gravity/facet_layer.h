@@ -42,6 +42,8 @@ ASTROLITH_HD inline Facet make_facet(const Vec3d& a, const Vec3d& b, const Vec3d
 struct LayerValue {
   double potential;  // I, in length units
   double height;     // n . r: the distance of the field point below the plane
+  double rounded;    // the sum of the squares of the terms of I, each as large as its factors may make it
+  double square;     // squared distance of the first corner
 };
 
 // I at p. Finite and right at points on the facet, on its edges and at its corners.
@@ -49,10 +51,12 @@ ASTROLITH_KERNEL LayerValue layer_potential(const Facet& f, double px, double py
   const double ax = f.corner[0].x - px, ay = f.corner[0].y - py, az = f.corner[0].z - pz;
   const double bx = f.corner[1].x - px, by = f.corner[1].y - py, bz = f.corner[1].z - pz;
   const double cx = f.corner[2].x - px, cy = f.corner[2].y - py, cz = f.corner[2].z - pz;
-  const double ra = __builtin_sqrt(ax * ax + ay * ay + az * az);
+  const double square = ax * ax + ay * ay + az * az;
+  const double ra = __builtin_sqrt(square);
   const double rb = __builtin_sqrt(bx * bx + by * by + bz * bz);
   const double rc = __builtin_sqrt(cx * cx + cy * cy + cz * cz);
   const double height = f.normal.x * ax + f.normal.y * ay + f.normal.z * az;
+  double rounded = 0.0;
   const auto edge = [&](int k, double x, double y, double z, double r1, double x2, double y2, double z2,
                         double r2) {
     const Vec3d &u = f.along[k], &m = f.outward[k];
@@ -62,7 +66,9 @@ ASTROLITH_KERNEL LayerValue layer_potential(const Facet& f, double px, double py
     const bool before = t1 > 0.0, behind = t2 <= 0.0;
     const double above = before ? r2 + t2 : behind ? r1 - t1 : (r2 + t2) * (r1 - t1);
     const double below = before ? r1 + t1 : behind ? r2 - t2 : beside;
-    return out * branch_free::log_ratio(above, below, f.edge[k], r1 + r2);
+    const double wire = branch_free::log_ratio(above, below, f.edge[k], r1 + r2), most = r1 * wire;
+    rounded += most * most;
+    return out * wire;
   };
   const double wires = edge(0, ax, ay, az, ra, bx, by, bz, rb) + edge(1, bx, by, bz, rb, cx, cy, cz, rc) +
                        edge(2, cx, cy, cz, rc, ax, ay, az, ra);
@@ -70,7 +76,8 @@ ASTROLITH_KERNEL LayerValue layer_potential(const Facet& f, double px, double py
                ca = cx * ax + cy * ay + cz * az;
   const double solid =
       2.0 * branch_free::atan2(height * f.twice_area, ra * rb * rc + ra * bc + rb * ca + rc * ab);
-  return {wires - height * solid, height};
+  const double cone = ra * solid;
+  return {wires - height * solid, height, rounded + cone * cone, square};
 }
 
 }  // namespace astrolith::layer

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "gravity/facet_layer.h"
 #include "gravity/gravity_tree.h"
 #include "numerics/host_device.h"
@@ -5,33 +7,53 @@
 namespace astrolith {
 namespace {
 
-ASTROLITH_SIMD_CLONES void add_facet(const layer::Facet& facet, const double* __restrict x,
-                                     const double* __restrict y, const double* __restrict z,
-                                     double* __restrict gx, double* __restrict gy, double* __restrict gz,
-                                     double* __restrict work) {
+ASTROLITH_SIMD_CLONES void add_facet(const layer::Facet& facet, const GravityBatch& points,
+                                     const PointRow& on, GravitySums& sums) {
   const layer::Facet f = facet;
 #pragma omp simd
   for (int i = 0; i < kPointBatch; ++i) {
-    const layer::LayerValue value = layer::layer_potential(f, x[i], y[i], z[i]);
-    gx[i] += f.normal.x * value.potential;
-    gy[i] += f.normal.y * value.potential;
-    gz[i] += f.normal.z * value.potential;
-    work[i] += value.height * value.potential;
+    const layer::LayerValue value = layer::layer_potential(f, points.x[i], points.y[i], points.z[i]);
+    const double potential = on[i] * value.potential;
+    sums.layers[0][i] += f.normal.x * potential;
+    sums.layers[1][i] += f.normal.y * potential;
+    sums.layers[2][i] += f.normal.z * potential;
+    sums.work[i] += value.height * potential;
   }
 }
 
-using Row = std::array<double, kPointBatch>;
+// What rounds: the terms of the facet's own potential, its height, and the sums so far.
+ASTROLITH_SIMD_CLONES void add_rounded_facet(const layer::Facet& facet, const GravityBatch& points,
+                                             const PointRow& on, GravitySums& sums, RoundedSquares& rounded) {
+  const layer::Facet f = facet;
+#pragma omp simd
+  for (int i = 0; i < kPointBatch; ++i) {
+    const layer::LayerValue value = layer::layer_potential(f, points.x[i], points.y[i], points.z[i]);
+    const double potential = on[i] * value.potential;
+    const double x = sums.layers[0][i] + f.normal.x * potential,
+                 y = sums.layers[1][i] + f.normal.y * potential,
+                 z = sums.layers[2][i] + f.normal.z * potential,
+                 work = sums.work[i] + value.height * potential;
+    sums.layers[0][i] = x, sums.layers[1][i] = y, sums.layers[2][i] = z;
+    sums.work[i] = work;
+    rounded.layers[i] += on[i] * value.rounded + (x * x + y * y + z * z);
+    rounded.work[i] +=
+        on[i] * (value.square * value.rounded + value.square * potential * potential) + work * work;
+  }
+}
+
+using Row = PointRow;
 
 // The irregular harmonics of one m, and the sums of all l, point after point.
 struct HarmonicRows {
   Row x, y, z, inverse;          // coordinates over r^2, and 1 / r^2
   Row diagonal_re, diagonal_im;  // S_mm
   Row now_re, now_im, last_re, last_im;
+  Row order;  // the last l of each point
   std::array<Row, 4> sums;
 };
 
-ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, int order, HarmonicRows& rows) {
-  for (int m = 0; m <= order; ++m) {
+ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, int most, HarmonicRows& rows) {
+  for (int m = 0; m <= most; ++m) {
     const double turn = -(2.0 * m - 1.0);
 #pragma omp simd
     for (int i = 0; i < kPointBatch; ++i) {
@@ -40,11 +62,12 @@ ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, in
                    next_im = turn * (rows.x[i] * im + rows.y[i] * re);
       rows.diagonal_re[i] = m > 0 ? next_re : re;
       rows.diagonal_im[i] = m > 0 ? next_im : im;
-      rows.now_re[i] = rows.diagonal_re[i];
-      rows.now_im[i] = rows.diagonal_im[i];
+      const bool on = rows.order[i] >= m;
+      rows.now_re[i] = on ? rows.diagonal_re[i] : 0.0;
+      rows.now_im[i] = on ? rows.diagonal_im[i] : 0.0;
       rows.last_re[i] = rows.last_im[i] = 0.0;
     }
-    for (int l = m; l <= order; ++l) {
+    for (int l = m; l <= most; ++l) {
       const std::array<double, 8>& t = multipoles.terms[static_cast<std::size_t>(harmonic_index(l, m))];
       const double up = 2.0 * l + 1.0, down = double(l) * l - double(m) * m;
 #pragma omp simd
@@ -55,8 +78,9 @@ ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, in
         rows.sums[2][i] += t[2] * re + t[6] * im;
         rows.sums[3][i] += t[3] * re + t[7] * im;
         const double a = up * rows.z[i], b = down * rows.inverse[i];
-        rows.now_re[i] = a * re - b * rows.last_re[i];
-        rows.now_im[i] = a * im - b * rows.last_im[i];
+        const bool on = rows.order[i] > l;
+        rows.now_re[i] = on ? a * re - b * rows.last_re[i] : 0.0;
+        rows.now_im[i] = on ? a * im - b * rows.last_im[i] : 0.0;
         rows.last_re[i] = re;
         rows.last_im[i] = im;
       }
@@ -64,37 +88,68 @@ ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, in
   }
 }
 
-}  // namespace
+// The points about the centre, and the sums of the multipoles.
+struct CenteredSums {
+  Row x, y, z;
+  std::array<Row, 4> sums;
+};
 
-void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, GravitySums& sums) {
-  for (const auto& [a, b, c] : facets) {
-    add_facet(layer::make_facet(a, b, c), points.x.data(), points.y.data(), points.z.data(),
-              sums.layers[0].data(), sums.layers[1].data(), sums.layers[2].data(), sums.work.data());
-  }
-}
-
-void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, int order,
-                    const GravityBatch& points, GravitySums& sums) {
+CenteredSums sums_about(const Vec3d& center, const GravityMultipoles& multipoles, const Row& order,
+                        const GravityBatch& points) {
+  CenteredSums at;
   HarmonicRows rows;
-  Row dx, dy, dz;
   for (std::size_t i = 0; i < kPointBatch; ++i) {
-    dx[i] = points.x[i] - node.center.x;
-    dy[i] = points.y[i] - node.center.y;
-    dz[i] = points.z[i] - node.center.z;
-    const double square = dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i], inverse = 1.0 / square;
-    rows.x[i] = dx[i] * inverse;
-    rows.y[i] = dy[i] * inverse;
-    rows.z[i] = dz[i] * inverse;
+    at.x[i] = points.x[i] - center.x;
+    at.y[i] = points.y[i] - center.y;
+    at.z[i] = points.z[i] - center.z;
+    const double square = at.x[i] * at.x[i] + at.y[i] * at.y[i] + at.z[i] * at.z[i], inverse = 1.0 / square;
+    rows.x[i] = at.x[i] * inverse;
+    rows.y[i] = at.y[i] * inverse;
+    rows.z[i] = at.z[i] * inverse;
     rows.inverse[i] = inverse;
     rows.diagonal_re[i] = __builtin_sqrt(inverse);
     rows.diagonal_im[i] = 0.0;
   }
+  rows.order = order;
   for (Row& sum : rows.sums) sum.fill(0.0);
-  sum_harmonics(multipoles, order, rows);
+  sum_harmonics(multipoles, static_cast<int>(*std::max_element(order.begin(), order.end())), rows);
+  at.sums = rows.sums;
+  return at;
+}
+
+}  // namespace
+
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, const PointRow& on,
+                GravitySums& sums) {
+  for (const auto& [a, b, c] : facets) add_facet(layer::make_facet(a, b, c), points, on, sums);
+}
+
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, const PointRow& on,
+                GravitySums& sums, RoundedSquares& rounded) {
+  for (const auto& [a, b, c] : facets)
+    add_rounded_facet(layer::make_facet(a, b, c), points, on, sums, rounded);
+}
+
+void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, const PointRow& order,
+                    const GravityBatch& points, GravitySums& sums) {
+  const CenteredSums at = sums_about(node.center, multipoles, order, points);
   for (std::size_t i = 0; i < kPointBatch; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) sums.layers[k][i] += rows.sums[k][i];
+    if (!(order[i] >= 0.0)) continue;
+    for (std::size_t k = 0; k < 3; ++k) sums.layers[k][i] += at.sums[k][i];
     sums.work[i] +=
-        rows.sums[3][i] - (dx[i] * rows.sums[0][i] + dy[i] * rows.sums[1][i] + dz[i] * rows.sums[2][i]);
+        at.sums[3][i] - (at.x[i] * at.sums[0][i] + at.y[i] * at.sums[1][i] + at.z[i] * at.sums[2][i]);
+  }
+}
+
+void add_far_body(const GravityTree& tree, const PointRow& on, const GravityBatch& points,
+                  GravitySums& sums) {
+  PointRow order;
+  for (std::size_t i = 0; i < kPointBatch; ++i) order[i] = on[i] > 0.0 ? tree.most_order : -1.0;
+  const CenteredSums at = sums_about(tree.nodes.front().center, tree.far, order, points);
+  for (std::size_t i = 0; i < kPointBatch; ++i) {
+    if (!(on[i] > 0.0)) continue;
+    for (std::size_t k = 0; k < 3; ++k) sums.layers[k][i] += at.sums[k][i];
+    sums.work[i] += at.sums[3][i];
   }
 }
 

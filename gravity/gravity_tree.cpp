@@ -156,6 +156,62 @@ std::vector<std::vector<std::uint32_t>> nodes_by_depth(const GravityTree& tree) 
   return depths;
 }
 
+void double_terms(GravityMultipoles& m) {
+  for (std::size_t at = kMostOrder + 1; at < kHarmonics; ++at) {
+    for (double& term : m.terms[at]) term *= 2.0;
+  }
+}
+
+// The integrals of R_lm over the volume. (y - c) R_lm has the divergence (l + 3) R_lm, so that they are those
+// of the layer n . (y - c) over l + 3.
+Harmonics volume_multipoles(const GravityMultipoles& surface, int order) {
+  Harmonics volume{};
+  for (int l = 0; l <= order; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const auto i = static_cast<std::size_t>(harmonic_index(l, m));
+      volume[i] = {surface.terms[i][3] / (l + 3), surface.terms[i][7] / (l + 3)};
+    }
+  }
+  return volume;
+}
+
+// The root mean square over directions of the sum of conj(M_lm) S_lm at distance 1 for one l. The mean square
+// of S_lm is (l - m)! (l + m)! / (2 l + 1).
+double strength_of_degree(const Harmonics& volume, int l) {
+  double sum = 0.0;
+  for (int m = 0; m <= l; ++m) {
+    const HarmonicValue& v = volume[static_cast<std::size_t>(harmonic_index(l, m))];
+    double square = (m == 0 ? 1.0 : 2.0) / (2 * l + 1);
+    for (int k = 2; k <= l - m; ++k) square *= k;
+    for (int k = 2; k <= l + m; ++k) square *= k;
+    sum += square * (v.re * v.re + v.im * v.im);
+  }
+  return std::sqrt(sum);
+}
+
+// dS_lm/dz = -S_(l+1)m and (d/dx +- i d/dy) S_lm = +-S_(l+1)(m+-1).
+void make_far(GravityTree& tree) {
+  const Harmonics volume = volume_multipoles(tree.multipoles.front(), tree.most_order);
+  const auto at = [&](int l, int m) {
+    return std::abs(m) <= l ? signed_harmonic(volume.data(), l, m) : HarmonicValue{};
+  };
+  for (int l = 0; l <= tree.most_order; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const HarmonicValue own = at(l, m), below = at(l - 1, m), less = at(l - 1, m - 1),
+                          more = at(l - 1, m + 1);
+      tree.far.terms[static_cast<std::size_t>(harmonic_index(l, m))] = {
+          0.5 * (more.re - less.re), 0.5 * (less.im + more.im),  below.re, 2.0 * own.re,
+          0.5 * (more.im - less.im), -0.5 * (less.re + more.re), below.im, 2.0 * own.im};
+    }
+  }
+  double_terms(tree.far);
+  double power = std::fabs(volume[0].re);
+  for (int l = 0; l <= tree.most_order; ++l, power *= tree.nodes.front().radius) {
+    if (l + 2 >= tree.most_order)
+      tree.far_strength = std::max(tree.far_strength, strength_of_degree(volume, l) / power);
+  }
+}
+
 void make_multipoles(GravityTree& tree, const Progress& progress) {
   tree.multipoles.assign(tree.nodes.size(), GravityMultipoles{});
   const Expansion expansion{tree.most_order, triangle_rule(tree.most_order), places_to(tree.most_order)};
@@ -179,12 +235,11 @@ void make_multipoles(GravityTree& tree, const Progress& progress) {
     });
     done = end;
   }
+  make_far(tree);
   // m and -m give equal terms; the sums take m > 0 only.
   parallel_for(0, static_cast<std::int64_t>(tree.nodes.size()), [&](std::int64_t i) {
     GravityMultipoles& m = tree.multipoles[static_cast<std::size_t>(i)];
-    for (std::size_t at = kMostOrder + 1; at < kHarmonics; ++at) {
-      for (double& term : m.terms[at]) term *= 2.0;
-    }
+    double_terms(m);
   });
 }
 

@@ -53,6 +53,13 @@ struct GravityTree {
   std::vector<std::array<Vec3d, 3>> facets;
   std::vector<GravityNode> nodes;
   std::vector<GravityMultipoles> multipoles;
+  // The multipoles of the body's volume about the centre of the first node: twice the potential to order
+  // most_order, and the acceleration, turned round, of its terms below most_order. A sum over the surface
+  // loses digits with the distance, because almost all of it cancels; of these terms none cancel.
+  GravityMultipoles far{};
+  // Of the potential's terms of degrees l = most_order - 2 to most_order: the largest root mean square over
+  // directions at distance d, as a multiple of (first node's radius / d)^l volume / d.
+  double far_strength = 0.0;
 };
 
 // Builds the tables of a mesh with indices in range and at least one triangle of positive area. Throws
@@ -60,18 +67,31 @@ struct GravityTree {
 GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail = {},
                               const Progress& progress = {});
 
-// Sums over all facets for points in the tables' units, arrays of `count` <= 16 points, added to: layers[k]
-// is the sum of n_k I, work the sum of (n . r) I.
+// Sums over all facets for 16 points in the tables' units, added to: layers[k] is the sum of n_k I, work the
+// sum of (n . r) I. What a point gets depends on no other point of its batch.
 constexpr int kPointBatch = 16;
+using PointRow = std::array<double, kPointBatch>;
 struct GravityBatch {
-  std::array<double, kPointBatch> x{}, y{}, z{};
+  PointRow x{}, y{}, z{};
 };
 struct GravitySums {
-  std::array<std::array<double, kPointBatch>, 3> layers{};
-  std::array<double, kPointBatch> work{};
+  std::array<PointRow, 3> layers{};
+  PointRow work{};
 };
-void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, GravitySums& sums);
-void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, int order,
+// The sums of squares of what is rounded on the way to the sums, for the vector of the layers and for work.
+// Their square roots times 2^-53 estimate the errors.
+struct RoundedSquares {
+  PointRow layers{}, work{};
+};
+// `on` is 1 for points that get the facets and 0 for others.
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, const PointRow& on,
+                GravitySums& sums);
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, const PointRow& on,
+                GravitySums& sums, RoundedSquares& rounded);
+// Each point has an order of its own, a whole number to kMostOrder; nothing is added where it is below 0.
+void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, const PointRow& order,
                     const GravityBatch& points, GravitySums& sums);
+// The whole body by tree.far, for points that are on.
+void add_far_body(const GravityTree& tree, const PointRow& on, const GravityBatch& points, GravitySums& sums);
 
 }  // namespace astrolith

@@ -16,9 +16,19 @@ struct Attraction {
   Vec3d acceleration;      // its gradient
 };
 
+// Estimates of the errors of one attraction, in its units. Errors are nearly always below, seldom by more
+// than a factor of 100.
+struct AttractionError {
+  double potential = 0.0, acceleration = 0.0;
+};
+struct ExactAttractions {
+  std::vector<Attraction> values;
+  std::vector<AttractionError> errors;
+};
+
 // A closed mesh whose faces are counter-clockwise seen from outside has the attraction of its volume. Points
-// may lie anywhere: inside, outside, on facets, edges and vertices. Values are the same for any number of
-// threads.
+// may lie anywhere: inside, outside, on facets, edges and vertices. The value of a point is the same for any
+// number of threads and whatever other points are given with it.
 class PolyhedronGravity {
  public:
   // Indices of the mesh must be in range. Throws InputError for a mesh without a facet that has an area,
@@ -27,10 +37,10 @@ class PolyhedronGravity {
                              const Progress& progress = {})
       : tree_(make_gravity_tree(mesh, detail, progress)) {}
 
-  // Near facets exactly, the others by multipoles. The sum of the bounds of all multipoles' errors is at most
-  // `tolerance` times the acceleration at a point. Where the acceleration nearly vanishes, as at the centre
-  // of a body, 0.05 of that of a ball of equal volume takes its place. tolerance in [1e-12, 0.1]. Throws
-  // WorkError when progress asks to stop.
+  // Near facets exactly, the others by multipoles, and beyond some radii the whole body by those of its
+  // volume. The sum of the bounds of all multipoles' errors is at most `tolerance` times the acceleration at
+  // a point. Where the acceleration nearly vanishes, as at the centre of a body, 0.05 of that of a ball of
+  // equal volume takes its place. tolerance in [1e-12, 0.1]. Throws WorkError when progress asks to stop.
   std::vector<Attraction> at(std::span<const Vec3d> points, double tolerance,
                              const Progress& progress = {}) const;
 
@@ -38,8 +48,9 @@ class PolyhedronGravity {
   // Directions are right to some hundredths of a degree.
   std::vector<Attraction> roughly_at(std::span<const Vec3d> points) const;
 
-  // All facets exactly. Takes time in proportion to points times facets.
-  std::vector<Attraction> exactly_at(std::span<const Vec3d> points, const Progress& progress = {}) const;
+  // All facets exactly, which takes time in proportion to points times facets. Where rounding would leave
+  // more than the multipoles of the volume cut off, beyond some 15 radii, these are taken.
+  ExactAttractions exactly_at(std::span<const Vec3d> points, const Progress& progress = {}) const;
 
   const GravityTree& tables() const { return tree_; }
 
@@ -47,14 +58,16 @@ class PolyhedronGravity {
   GravityTree tree_;
 };
 
-// The difference of accelerations from exact ones, as fractions of the exact ones.
+// The difference of accelerations from exact ones and the estimated errors of these, as fractions of the
+// exact ones.
 struct AchievedError {
   int points = 0;
   double largest = 0.0, rms = 0.0;
   double largest_of_potential = 0.0;
 };
 
-// Compares the values at `sample` of the points, chosen at random by the seed, with exact ones.
+// Compares the values at `sample` of the points, chosen at random by the seed, with exact ones. All points
+// are compared where there are no more. sample >= 0.
 AchievedError achieved_error(const PolyhedronGravity& gravity, std::span<const Vec3d> points,
                              std::span<const Attraction> values, int sample, std::uint64_t seed,
                              const Progress& progress = {});

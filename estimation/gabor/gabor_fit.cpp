@@ -33,15 +33,39 @@ void require_texture(const GreyImage& exemplar, const std::string& name) {
   }
 }
 
+// The power of each frequency, or the share of its strongest neighbour's that leaks from the narrowest lobe
+// there.
+std::vector<double> least_powers(const PowerSpectrum& spectrum) {
+  constexpr double kLeak = 0.02;
+  const int w = spectrum.width, h = spectrum.height;
+  std::vector<double> powers = spectrum.power;
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      double& power =
+          powers[static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x)];
+      for (const int dy : {h - 1, 0, 1}) {
+        for (const int dx : {w - 1, 0, 1}) {
+          const std::size_t beside = static_cast<std::size_t>((y + dy) % h) * static_cast<std::size_t>(w) +
+                                     static_cast<std::size_t>((x + dx) % w);
+          power = std::max(power, kLeak * spectrum.power[beside]);
+        }
+      }
+    }
+  }
+  return powers;
+}
+
 // The weights W of the dictionary's rows, for a spectrum S of unit variance. With sqrt(w / S) a small error
 // of the spectrum counts as twice the error of its square root, which the weighted optimal-transport distance
-// measures. Frequency 0 holds no data.
+// measures. Beside a line S is what its lobe leaks; with less no lobe would be let in. Frequency 0 holds no
+// data.
 std::vector<double> row_weights(const SpectrumEstimate& estimate) {
   const std::vector<double>& w = estimate.weights;
   std::vector<double> weight(estimate.spectrum.power.size(), 1.0);
+  const std::vector<double> power = least_powers(estimate.spectrum);
   const double unit = estimate.spectrum.variance(), floor = 1e-4;
   for (std::size_t i = 1; i < w.size(); ++i) {
-    weight[i] = w[i] / std::sqrt(w[i] * estimate.spectrum.power[i] / unit + floor);
+    weight[i] = w[i] / std::sqrt(w[i] * power[i] / unit + floor);
   }
   weight[0] = 0.0;
   return weight;
@@ -150,8 +174,9 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
   lobes = refined(lobes, weight, heeded, fit);
   if (lobes.empty()) {
-    throw WorkError(name + (stopped ? ": stopped before a lobe was found; nothing is written"
-                                    : ": no lobe was found; try a smaller penalty"));
+    if (stopped) throw WorkError(name + ": stopped before a lobe was found; nothing is written");
+    throw InputError(
+        name + ": no lobe fits its spectrum; try a smaller penalty, or scale patterns of two pixels up");
   }
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);

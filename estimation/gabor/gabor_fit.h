@@ -43,7 +43,7 @@ inline constexpr int kSmallestExemplarSide = 32;
 inline constexpr double kLeastTexture = 1e-6;
 
 // Fits lobes to an exemplar, which messages call `name`. Throws InputError for sides below 32 pixels and for
-// constant images and those without texture, WorkError where no lobe is found.
+// constant images and those without texture or a lobe that fits, WorkError when progress asks to stop early.
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress = {});
 

@@ -128,7 +128,7 @@ def gravity(
     unit: Optional[str] = None,
     at: str = "facets",
     points: Optional[npt.ArrayLike] = None,
-    tolerance: float = 1e-6,
+    tolerance: float = 1e-7,
     exact: bool = False,
     sample: int = 100,
     degree: int = 4,
@@ -163,9 +163,10 @@ def gravity(
     tolerance
         A bound of the relative error of each acceleration, 1e-12 to 0.1.
     exact
-        Whether to sum over all facets exactly; 50,000 facets take minutes.
+        Whether to sum over all facets exactly; 50,000 facets take minutes. Places beyond some 15 radii take multipoles
+        to order 10, which are more exact there.
     sample
-        Places that are also computed exactly, to state the error achieved; 0 to 100,000.
+        Places that are also computed exactly, to state the error achieved, all if there are no more; 0 to 100,000.
     degree
         The degree of the spherical harmonics, 0 to 50.
     radius

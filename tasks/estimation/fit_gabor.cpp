@@ -10,6 +10,7 @@
 
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/spectrum/photo_period.h"
 #include "numerics/errors.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
@@ -143,6 +144,21 @@ void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions&
     job.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
                         predicted / 1e9));
   }
+}
+
+// A photo that repeats itself is one period as often as it has room for. Its spectrum has lines and nothing
+// between them, which no few lobes resemble.
+void take_one_period(const PhotoFitArguments& o, Job& job, std::vector<GreyImage>& planes) {
+  const PhotoPeriod period = find_period(planes, job.progress("photo"));
+  if (!period.found()) return;
+  planes = one_period(std::move(planes), period, kSmallestExemplarSide);
+  job.summary["period"] = {{"x_px", period.x}, {"y_px", period.y}};
+  const std::string words = period.x == period.y ? fmt::format("every {} pixels along x and y", period.x)
+                            : period.y == 0      ? fmt::format("every {} pixels along x", period.x)
+                            : period.x == 0      ? fmt::format("every {} pixels along y", period.y)
+                                                 : fmt::format("every {} x {} pixels", period.x, period.y);
+  job.say(fmt::format("{}: repeats itself {}; {} x {} pixels of it are fitted", o.image, words,
+                      planes.front().width, planes.front().height));
 }
 
 PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
@@ -292,6 +308,8 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
       o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, options.photo.colors);
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   if (!report(job.progress("photo"), 0.0, "read")) throw WorkError(o.image + ": stopped; nothing is written");
+  flatten(photo.planes, o.image, options.photo);
+  take_one_period(o, job, photo.planes);
   FittedPhoto result{fit_texture(std::move(photo.planes), o.image, options, job.stages()), {}};
   TextureFit& fit = result.fit;
   set_provenance(job, o, fit.recipe);

@@ -80,7 +80,6 @@ TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,
                        const TextureFitOptions& options, const StageProgress& progress) {
   TextureFit fit;
   fit.photo = std::move(photo);
-  flatten(fit.photo, name, options.photo);
   if (!options.model) {
     // What one of the models would refuse is refused before the comparison.
     require_exemplar(fit.luma(), name);

@@ -25,7 +25,7 @@ struct TextureFitOptions {
 struct TextureFit {
   TextureModel model = TextureModel::kGabor;
   std::optional<ModelChoice> choice;         // where it was chosen
-  std::vector<GreyImage> photo;              // without its trend: grey, or red, green and blue
+  std::vector<GreyImage> photo;              // grey, or red, green and blue
   std::optional<PhotoFit> lobes;             // of kGabor
   std::optional<PreparedExemplar> exemplar;  // of kExemplar
   std::optional<ExemplarLayer> image;      // of kPhase and kExemplar; lengths are pixels, heights grey values
@@ -38,7 +38,8 @@ struct TextureFit {
 // The model of that name: "gabor", "phase", "exemplar"; none for "auto".
 std::optional<TextureModel> model_named(const std::string& name);
 
-// Fits a photo, which messages call `name`: one plane of grey, or red, green and blue. A fit of lobes that is
+// Fits a photo, which messages call `name`: one plane of grey, or red, green and blue, without its trend
+// (flatten()). A fit of lobes that is
 // asked to stop is the best so far. Throws as choose_model(), fit_planes(), phase_exemplar() and
 // prepare_exemplar() do.
 TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,

@@ -43,7 +43,7 @@ void add_parts(const std::vector<BodyPart>& parts, const std::vector<Vec3d>& poi
   for (const BodyPart& part : parts) {
     const PolyhedronGravity gravity(part.body.mesh, {}, progress);
     const std::vector<Attraction> own =
-        exact ? gravity.exactly_at(points, progress) : gravity.at(points, tolerance, progress);
+        exact ? gravity.exactly_at(points, progress).values : gravity.at(points, tolerance, progress);
     for (std::size_t i = 0; i < own.size(); ++i) {
       attractions[i].potential += part.share * own[i].potential;
       attractions[i].acceleration += part.share * own[i].acceleration;

@@ -87,15 +87,12 @@ Evaluation evaluated(const GravityBody& body, const GravityPlaces& places, const
                      const StageProgress& progress) {
   const PolyhedronGravity gravity(body.mesh, {}, progress("tree"));
   Evaluation result;
-  if (options.exact) {
-    result.attractions = gravity.exactly_at(places.points, progress("gravity"));
-    add_parts(options.parts, places.points, options.tolerance, true, progress("parts"), result.attractions);
-    return result;
-  }
-  result.attractions = gravity.at(places.points, options.tolerance, progress("gravity"));
+  result.attractions = options.exact ? gravity.exactly_at(places.points, progress("gravity")).values
+                                     : gravity.at(places.points, options.tolerance, progress("gravity"));
   result.error = achieved_error(gravity, places.points, result.attractions, options.sample, options.seed,
                                 progress("check"));
-  add_parts(options.parts, places.points, options.tolerance, false, progress("parts"), result.attractions);
+  add_parts(options.parts, places.points, options.tolerance, options.exact, progress("parts"),
+            result.attractions);
   return result;
 }
 
@@ -127,8 +124,8 @@ ComputedGravity compute_gravity(const GravityBody& body, const GravityPlaces& pl
   result.figures["places"] = places.kind;
   result.figures["count"] = values.size();
   result.figures["values"] = surface_json(places, values, means);
-  if (!options.exact && options.sample > 0) {
-    result.figures["achieved_error"] = error_json(evaluation.error, options.tolerance);
+  if (options.sample > 0) {
+    result.figures["achieved_error"] = error_json(evaluation.error, options.exact ? 0.0 : options.tolerance);
   }
   return result;
 }

@@ -16,8 +16,8 @@ struct GravityOptions {
   double density = 0.0;           // kg / m^3, above 0
   double period = 0.0;            // of rotation, hours; 0: the body is at rest
   Vec3d axis{0, 0, 1};            // of rotation, a unit vector
-  double tolerance = 1e-6;        // bound of the relative error of each acceleration, 1e-12 to 0.1
-  bool exact = false;             // sums over all facets instead
+  double tolerance = 1e-7;        // bound of the relative error of each acceleration, 1e-12 to 0.1
+  bool exact = false;             // sums over all facets instead, as far as these are exact
   int sample = 100;               // places that are also computed exactly, to state the error achieved
   std::uint64_t seed = 1;         // chooses them
   int degree = 4;                 // of the harmonics, 0 to kMostDegree

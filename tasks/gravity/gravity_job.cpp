@@ -27,7 +27,7 @@ namespace {
 
 struct Arguments {
   std::string shape, output, preview, points, unit, parts, at = "facets", color = "slope_deg";
-  double density = 0.0, period = 0.0, tolerance = 1e-6, radius = 0.0;
+  double density = 0.0, period = 0.0, tolerance = 1e-7, radius = 0.0;
   std::tuple<double, double, double> axis{0, 0, 1};
   int resolution = 128, degree = 4, sample = 100;
   bool exact = false;
@@ -75,7 +75,9 @@ void add_options(Job& job, Arguments& a) {
   app.add_option("--tolerance", a.tolerance, "bound of the error of each acceleration, relative")
       .check(in_range(1e-12, 0.1));
   app.add_flag("--exact", a.exact, "sum over all facets exactly; takes minutes for 50,000 facets");
-  app.add_option("--sample", a.sample, "places that are also computed exactly, to state the error achieved")
+  app.add_option(
+         "--sample", a.sample,
+         "places that are also computed exactly, to state the error achieved; all if there are no more")
       .check(in_range(0, 100000));
   app.add_option("--degree", a.degree, "of the spherical harmonics of gravity")
       .check(in_range(0, kMostDegree));

@@ -1,7 +1,9 @@
 // Exact sums beside truths that share nothing with them: the closed form of a cuboid, quadrature over a
 // tetrahedron, and balls and ellipsoids as limits of polyhedra.
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -22,7 +24,7 @@ struct Truth {
 };
 
 void expect_near(const TriangleMesh& mesh, const Vec3d& p, const Truth& truth, double tolerance) {
-  const Attraction value = PolyhedronGravity(mesh).exactly_at(std::vector<Vec3d>{p})[0];
+  const Attraction value = PolyhedronGravity(mesh).exactly_at(std::vector<Vec3d>{p}).values[0];
   EXPECT_LT(std::fabs(static_cast<double>(value.potential / truth.potential - 1)), tolerance)
       << p.x << " " << p.y << " " << p.z;
   const Vec3d pull{static_cast<double>(truth.pull.x), static_cast<double>(truth.pull.y),
@@ -132,6 +134,80 @@ TEST(AnalyticTruth, TetrahedronByQuadrature) {
   }
 }
 
+// The cuboid [0, sides] from outside, as the sum over the points of a rule in its volume: nothing cancels.
+Truth cuboid_from_afar(const Vec3d& sides, const Vec3d& p) {
+  static const std::vector<Node> rule = gauss(40);
+  Truth truth;
+  for (const Node& i : rule) {
+    for (const Node& j : rule) {
+      for (const Node& k : rule) {
+        const LongVector f{i.at * sides.x - p.x, j.at * sides.y - p.y, k.at * sides.z - p.z};
+        const Long weight = i.weight * j.weight * k.weight * sides.x * sides.y * sides.z, r = norm(f);
+        truth.potential += weight / r;
+        truth.pull += f * (weight / (r * r * r));
+      }
+    }
+  }
+  return truth;
+}
+
+double relative_error(const Attraction& value, const Truth& truth) {
+  return static_cast<double>(norm(long_vector(value.acceleration) - truth.pull) / norm(truth.pull));
+}
+
+struct FarPlaces {
+  std::vector<Vec3d> points;
+  std::vector<Truth> truths;
+};
+
+// From 1.5 to 1e9 radii of the cuboid, in directions without symmetry.
+FarPlaces far_places(const Vec3d& sides) {
+  FarPlaces places;
+  double turn = 0.3;
+  for (const double radii : {1.5, 2.5, 4.0, 5.0, 6.0, 9.0, 13.0, 16.0, 20.0, 40.0, 1e3, 1e5, 1e7, 1e9}) {
+    const Vec3d direction = normalized(Vec3d{std::cos(turn), std::sin(turn), 0.4 + 0.1 * turn});
+    places.points.push_back(0.5 * sides + 0.5 * radii * norm(sides) * direction);
+    places.truths.push_back(cuboid_from_afar(sides, places.points.back()));
+    turn += 1.0;
+  }
+  return places;
+}
+
+// stated >= true >= stated / 100, alone and beside other places, and nobody's bytes depend on the others'.
+void expect_honest(const Vec3d& sides, double tolerance, double most) {
+  TriangleMesh mesh = testing::cube();
+  for (Vec3d& v : mesh.vertices) v = {sides.x * v.x, sides.y * v.y, sides.z * v.z};
+  const PolyhedronGravity gravity(mesh);
+  const auto values = [&](const std::vector<Vec3d>& points) {
+    return tolerance > 0.0 ? gravity.at(points, tolerance) : gravity.exactly_at(points).values;
+  };
+  const FarPlaces places = far_places(sides);
+  const std::vector<Attraction> together = values(places.points);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < places.points.size(); ++i) {
+    const std::vector<Vec3d> one{places.points[i]};
+    const std::vector<Attraction> alone = values(one);
+    EXPECT_EQ(std::memcmp(alone.data(), &together[i], sizeof(Attraction)), 0) << i;
+    const double error = relative_error(alone[0], places.truths[i]),
+                 stated = achieved_error(gravity, one, alone, 100, 1).largest;
+    EXPECT_GE(stated, error) << i;
+    EXPECT_GE(std::max(error, 1e-15), 0.01 * stated) << i;  // a few round-offs may cancel by luck
+    largest = std::max(largest, error);
+  }
+  const AchievedError stated = achieved_error(gravity, places.points, together, 100, 1);
+  EXPECT_EQ(stated.points, static_cast<int>(places.points.size()));
+  EXPECT_GE(stated.largest, largest);
+  EXPECT_GE(largest, 0.01 * stated.largest);
+  EXPECT_LE(largest, most);
+}
+
+TEST(AnalyticTruth, FarPlacesStateTheirOwnErrors) {
+  for (const Vec3d& sides : {Vec3d{1, 1, 1}, Vec3d{1, 2, 0.5}, Vec3d{3, 1, 0.25}}) {
+    expect_honest(sides, 1e-7, 1e-8);
+    expect_honest(sides, 0.0, 1e-11);
+  }
+}
+
 // An octahedron whose faces are divided into n * n triangles and drawn onto the unit ball. The map from a
 // face to the ball is smooth, so that errors are a series in even powers of 1 / n.
 TriangleMesh octasphere(int n) {
@@ -185,7 +261,7 @@ Truth limit_of_ellipsoids(const Vec3d& half, const Vec3d& p) {
   return limit_of([&](int n) {
     TriangleMesh mesh = octasphere(n);
     for (Vec3d& v : mesh.vertices) v = {half.x * v.x, half.y * v.y, half.z * v.z};
-    const Attraction at = PolyhedronGravity(mesh, kNoTree).exactly_at(std::vector<Vec3d>{p})[0];
+    const Attraction at = PolyhedronGravity(mesh, kNoTree).exactly_at(std::vector<Vec3d>{p}).values[0];
     return Truth{at.potential, long_vector(at.acceleration)};
   });
 }

@@ -16,7 +16,7 @@ namespace astrolith {
 namespace {
 
 Attraction exact_at(const PolyhedronGravity& gravity, const Vec3d& p) {
-  return gravity.exactly_at(std::vector<Vec3d>{p})[0];
+  return gravity.exactly_at(std::vector<Vec3d>{p}).values[0];
 }
 
 double relative(const Vec3d& value, const Vec3d& truth) { return norm(value - truth) / norm(truth); }
@@ -68,7 +68,7 @@ TEST(PolyhedronGravity, MultipolesKeepTheTolerance) {
     const auto unit = [&](int k) { return unit_float(hash_cell(3u, i, k, 0)) - 0.5; };
     points.push_back(Vec3d{unit(0), unit(1), unit(2)} * (i % 2 == 0 ? 2.0 : 40.0));
   }
-  const std::vector<Attraction> exact = gravity.exactly_at(points);
+  const std::vector<Attraction> exact = gravity.exactly_at(points).values;
   for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) {
     const std::vector<Attraction> values = gravity.at(points, tolerance);
     double worst = 0.0, worst_potential = 0.0;
@@ -88,8 +88,8 @@ TEST(PolyhedronGravity, AchievedErrorIsThatOfTheSample) {
   const TriangleMesh mesh = rough_body(4);
   const PolyhedronGravity gravity(mesh);
   const std::vector<Vec3d> points = facet_centers(mesh);
-  std::vector<Attraction> values = gravity.exactly_at(points);
-  EXPECT_EQ(achieved_error(gravity, points, values, 50, 1).largest, 0.0);
+  std::vector<Attraction> values = gravity.exactly_at(points).values;
+  EXPECT_LT(achieved_error(gravity, points, values, 50, 1).largest, 1e-12);
   for (Attraction& value : values) value.acceleration *= 1.001;
   const AchievedError error = achieved_error(gravity, points, values, 50, 1);
   EXPECT_NEAR(error.largest, 1e-3, 1e-9);

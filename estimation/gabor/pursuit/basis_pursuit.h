@@ -5,6 +5,7 @@
 // over the Gabor dictionary A.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct BasisPursuitProblem {
 struct BasisPursuitOptions {
   double relative_gap = 1e-3;  // stop when (P - best dual) / P is at most this, > 0
   int max_iterations = 20000;
+  // Stop at so many atoms. Photos take 30 to 300; sharp edges of a spectrum would take thousands.
+  std::size_t most_atoms = 600;
 };
 
 // The values at one check of the certificate.

@@ -16,8 +16,14 @@ constexpr double kRidge = 1e-12;
 
 class ActiveSet {
  public:
-  ActiveSet(const Eigen::MatrixXd& G, const Eigen::VectorXd& q, Eigen::VectorXd& x, int max_solves)
-      : G_(G), q_(q), x_(x), solves_left_(max_solves), tolerance_(1e-12 * q.cwiseAbs().maxCoeff()) {
+  ActiveSet(const Eigen::MatrixXd& G, const Eigen::VectorXd& q, Eigen::VectorXd& x, int max_solves,
+            const Progress& progress)
+      : G_(G),
+        q_(q),
+        x_(x),
+        progress_(progress),
+        solves_left_(max_solves),
+        tolerance_(1e-12 * q.cwiseAbs().maxCoeff()) {
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       if (x(i) > 0.0) free_.push_back(i);
     }
@@ -61,6 +67,7 @@ class ActiveSet {
   // The minimum over these coordinates with any signs.
   Eigen::VectorXd solve(const Indices& at) {
     --solves_left_;
+    if (!report(progress_, 0.0, "heights of lobes")) solves_left_ = 0;
     const auto n = static_cast<Eigen::Index>(at.size());
     Eigen::MatrixXd block = G_(at, at);
     block.diagonal() *= 1.0 + kRidge;
@@ -153,6 +160,7 @@ class ActiveSet {
   const Eigen::MatrixXd& G_;
   const Eigen::VectorXd& q_;
   Eigen::VectorXd& x_;
+  const Progress& progress_;
   int solves_left_;
   double tolerance_;
   Indices free_;
@@ -161,8 +169,8 @@ class ActiveSet {
 }  // namespace
 
 bool minimize_nonnegative_quadratic(const Eigen::MatrixXd& G, const Eigen::VectorXd& q, Eigen::VectorXd& x,
-                                    int max_solves) {
-  return ActiveSet(G, q, x, max_solves).minimize();
+                                    int max_solves, const Progress& progress) {
+  return ActiveSet(G, q, x, max_solves, progress).minimize();
 }
 
 }  // namespace astrolith

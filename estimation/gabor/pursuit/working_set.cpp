@@ -55,13 +55,14 @@ class RestrictedProblem {
     extend_gram(old, n);
   }
 
-  // Returns whether the minimum was reached within `max_solves` factorisations.
-  bool solve(int max_solves) {
+  // Returns whether the minimum was reached within `max_solves` factorisations, and before progress asked to
+  // stop.
+  bool solve(int max_solves, const Progress& progress) {
     Eigen::VectorXd q(x_.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       q(i) = target_correlations_[atoms_[static_cast<std::size_t>(i)]] - problem_.penalty;
     }
-    return q.size() == 0 || minimize_nonnegative_quadratic(gram_, q, x_, max_solves);
+    return q.size() == 0 || minimize_nonnegative_quadratic(gram_, q, x_, max_solves, progress);
   }
 
   void drop_zeros() {
@@ -208,7 +209,7 @@ class WorkingSetPursuit {
     std::vector<std::size_t> entering = positive_entries(start_);
     for (int k = 0;; ++k) {
       restricted_.add(entering, start_);
-      const bool solved = restricted_.solve(budget_.solves());
+      const bool solved = restricted_.solve(budget_.solves(), progress);
       restricted_.drop_zeros();
       std::vector<double> x = restricted_.coefficients();
       const double gap = certify(x);
@@ -219,8 +220,8 @@ class WorkingSetPursuit {
       budget_.after_round(improved);
       // Rounding in the restricted problem must not loop for ever: no progress is the end.
       const bool stuck = !improved && (solved || budget_.exhausted());
-      const bool go_on = report_gap(progress, gap);
-      if (result_.reached || !go_on || stuck || k >= options_.max_iterations) break;
+      const bool full = restricted_.atoms().size() >= options_.most_atoms || k >= options_.max_iterations;
+      if (!report_gap(progress, gap) || result_.reached || stuck || full) break;
       entering = next_batch(problem_.dictionary, sorted_violators(problem_, correlations_, restricted_));
       if (entering.empty() && solved) break;
     }

@@ -24,17 +24,6 @@ constexpr double kStillContinues = 1.05;
 
 double bend_of(double before, double here, double after) { return std::abs(before - 2.0 * here + after); }
 
-// The sum over column x of the second differences along x of the periodic image, without their signs.
-// Squares would let a single bright grain outweigh all other rows.
-double column_bend(const GreyImage& image, int x) {
-  const int w = image.width;
-  double sum = 0.0;
-  for (int y = 0; y < image.height; ++y) {
-    sum += bend_of(image.at((x + w - 1) % w, y), image.at(x, y), image.at((x + 1) % w, y));
-  }
-  return sum;
-}
-
 double row_bend(const GreyImage& image, int y) {
   const int h = image.height;
   double sum = 0.0;
@@ -103,6 +92,17 @@ double weighted_sum(const GreyImage& image, const std::vector<double>& wx, const
 }
 
 }  // namespace
+
+// The sum over column x of the second differences along x of the periodic image, without their signs.
+// Squares would let a single bright grain outweigh all other rows.
+double column_bend(const GreyImage& image, int x) {
+  const int w = image.width;
+  double sum = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    sum += bend_of(image.at((x + w - 1) % w, y), image.at(x, y), image.at((x + 1) % w, y));
+  }
+  return sum;
+}
 
 bool repeats_along_x(const GreyImage& image) {
   return continues(image.width, [&](int x) { return column_bend(image, x); });

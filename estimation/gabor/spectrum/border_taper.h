@@ -12,6 +12,8 @@ namespace astrolith {
 // sum of its second differences, taken without signs. Borders continue each other if they bend about as much
 // as at least three separate places inside, or less. A strong stratum or a bright grain therefore does not
 // hide a cut. White noise continues across any cut, which does it no harm.
+double column_bend(const GreyImage& image,
+                   int x);  // of column x, whose neighbours are those of an endless pattern
 bool repeats_along_x(const GreyImage& image);
 bool repeats_along_y(const GreyImage& image);
 

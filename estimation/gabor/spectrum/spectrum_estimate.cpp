@@ -53,6 +53,26 @@ struct TriedSpline {
   LogSpectrumSpline::Freedom freedom;
 };
 
+// For each octave the index of the spline with the least criterion; the first of equals.
+std::vector<std::size_t> best_by_octave(const std::vector<TriedSpline>& tried) {
+  std::vector<std::size_t> best(tried[0].scores.size(), 0);
+  for (std::size_t octave = 0; octave < best.size(); ++octave) {
+    for (std::size_t k = 1; k < tried.size(); ++k) {
+      if (tried[k].scores[octave] < tried[best[octave]].scores[octave]) best[octave] = k;
+    }
+  }
+  return best;
+}
+
+// Whether no octave is best with one of the last four splines. Spectra of lines end so: wider splines are
+// ever worse, and take ever longer.
+bool grown_worse(const std::vector<TriedSpline>& tried) {
+  constexpr std::size_t kLast = 4;
+  if (tried.size() <= kLast) return false;
+  const std::vector<std::size_t> best = best_by_octave(tried);
+  return *std::max_element(best.begin(), best.end()) + kLast < tried.size();
+}
+
 // The splines of all widths, the roughest first; each fit starts from the one before it.
 std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std::vector<double>& positions,
                                     const Progress& progress) {
@@ -66,19 +86,9 @@ std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std:
     next.g = symmetrised(spline.fit(w, tried.empty() ? std::vector<double>{} : tried.back().g), periodogram);
     next.scores = octave_scores(periodogram, next.g, next.freedom.parameters, positions);
     tried.push_back(std::move(next));
+    if (grown_worse(tried)) break;
   }
   return tried;
-}
-
-// For each octave the index of the spline with the least criterion; the first of equals.
-std::vector<std::size_t> best_by_octave(const std::vector<TriedSpline>& tried) {
-  std::vector<std::size_t> best(tried[0].scores.size(), 0);
-  for (std::size_t octave = 0; octave < best.size(); ++octave) {
-    for (std::size_t k = 1; k < tried.size(); ++k) {
-      if (tried[k].scores[octave] < tried[best[octave]].scores[octave]) best[octave] = k;
-    }
-  }
-  return best;
 }
 
 // A fractional index into a list: `fraction` of the way from `lower` to `upper`.
@@ -148,13 +158,14 @@ SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progr
   SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0, {}, 0.0};
   std::vector<double>& power = estimate.spectrum.power;
   const double floor = 1e-12 * periodogram.variance();
+  const double peak = *std::max_element(periodogram.power.begin() + 1, periodogram.power.end());
   std::vector<double> variance(power.size(), 0.0);  // of ln S
   power[0] = 0.0;
   for (std::size_t i = 1; i < power.size(); ++i) {
     const Between spline(spline_index(positions[i], best), tried.size());
     const TriedSpline& rough = tried[spline.lower];
     const double g = std::lerp(rough.g[i], tried[spline.upper].g[i], spline.fraction);
-    power[i] = std::max(floor, std::exp(g));
+    power[i] = std::clamp(std::exp(g), floor, peak);
     variance[i] = rough.freedom.variance;
   }
   raise_to_variance(estimate.spectrum, periodogram.variance());

@@ -85,7 +85,7 @@ TEST(GaborFit, RefusesWhatHasNoTexture) {
   EXPECT_THROW(fit_gabor_lobes({64, 64, std::vector<double>(64 * 64, 0.5)}, "flat.png", {}), InputError);
 }
 
-// One bright pixel, a pure cosine and a checkerboard must not crash the fit.
+// One bright pixel, a pure cosine, a checkerboard and a strip of tiles must not crash the fit.
 TEST(GaborFit, SurvivesDegenerateTextures) {
   std::vector<GreyImage> images(3, GreyImage{33, 40, std::vector<double>(33 * 40, 0.0)});
   images[0].values[400] = 1.0;
@@ -93,6 +93,13 @@ TEST(GaborFit, SurvivesDegenerateTextures) {
     images[1].values[i] = std::cos(2.0 * 3.14159265358979 * 4.0 * static_cast<double>(i % 33) / 33.0);
     images[2].values[i] = static_cast<double>((i % 33 + i / 33) % 2);
   }
+  // Twenty tiles side by side: a spectrum of lines with nothing between them.
+  const GreyImage tile = testing::realisation_of(testing::four_lobe_spectrum(), 4).part(0, 0, 32, 32);
+  GreyImage strip{640, 32, {}};
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 640; ++x) strip.values.push_back(tile.at(x % 32, y));
+  }
+  images.push_back(strip);
   for (const GreyImage& image : images) {
     const GaborFit fit = fit_gabor_lobes(image, "degenerate", {});
     EXPECT_GE(fit.lobes.size(), 1u);

@@ -42,6 +42,37 @@ TEST_F(FitGabor, WritesARecipeOfOneLayer) {
   EXPECT_EQ(recipe().provenance.input_sha256, sha256_of_file(folder_ / "rock.png"));
 }
 
+// Sixteen tiles are fitted as one, and so is a strip of them.
+TEST_F(FitGabor, FitsOnePeriodOfAPhotoThatRepeatsItself) {
+  const auto tiles = [](int across, int down) {
+    constexpr int kSide = 48;
+    std::vector<std::uint8_t> grey;
+    for (int y = 0; y < down * kSide; ++y) {
+      for (int x = 0; x < across * kSide; ++x) {
+        float sum = 0;
+        for (int k = 0; k < 16; ++k)
+          sum += unit_float(hash_cell(5u, (x + k % 4) % kSide, (y + k / 4) % kSide, 0));
+        grey.push_back(static_cast<std::uint8_t>(sum * 255 / 16));
+      }
+    }
+    return testing::png(across * kSide, down * kSide, grey);
+  };
+  write("tiles.png", tiles(4, 4));
+  write("strip.png", tiles(20, 1));
+  const std::string said = succeed("tiles.png -o rock.json --summary s.json");
+  EXPECT_TRUE(
+      has(said, "tiles.png: repeats itself every 48 pixels along x and y; 48 x 48 pixels of it are fitted"));
+  EXPECT_EQ(json("s.json")["period"]["x_px"], 48);
+  EXPECT_TRUE(has(succeed("strip.png -o strip.json"),
+                  "strip.png: repeats itself every 48 pixels along x; 48 x 48 pixels of it are fitted"));
+  const auto lobes_of = [&](const std::string& name) {
+    return std::get<GaborLayer>(read_recipe(folder_ / name).layers[0]).lobes;
+  };
+  EXPECT_FALSE(lobes_of("rock.json").empty());
+  EXPECT_EQ(lobes_of("rock.json").size(), lobes_of("strip.json").size());
+  EXPECT_FALSE(has(succeed("rock.png -o rock.json"), "repeats itself"));
+}
+
 // The exemplar's image lies beside the recipe, which names it; both have the same bytes for any threads.
 TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
   const std::string line = "--model exemplar --height-rms 0.5 --threads ";

@@ -149,6 +149,24 @@ TEST_F(Gravity, AtPointsOfNamedColumns) {
   refuse(line + "wide.csv", "wide.csv: line 1: has 4 columns where 3 (x, y, z) are due; name the columns");
 }
 
+// A place 4.4e6 radii away has the gravity of a point, whatever stands beside it.
+TEST_F(Gravity, OfAFarPlaceBesideANearOne) {
+  write("both.txt", "1.5 0 0\n4400000 0 0\n");
+  write("far.txt", "4400000 0 0\n");
+  for (const std::string how : {"", " --exact"}) {
+    const auto both = gravity("ball.obj --density 2000 --points both.txt -o both.csv" + how),
+               alone = gravity("ball.obj --density 2000 --points far.txt -o far.csv" + how);
+    const double truth = kConstant * both["body"]["mass_kg"].get<double>() / (4.4e9 * 4.4e9);
+    EXPECT_NEAR(rows_of("both.csv")[1][8] / truth, 1.0, 1e-8);
+    EXPECT_EQ(text("both.csv").substr(text("both.csv").find("\n4400000,")),
+              text("far.csv").substr(text("far.csv").find("\n4400000,")));
+    EXPECT_LE(alone["achieved_error"]["largest"], 1e-14);
+    EXPECT_GT(both["achieved_error"]["largest"], 1e-16);
+    EXPECT_LE(both["achieved_error"]["largest"], 1e-8);
+    EXPECT_EQ(both["achieved_error"]["sample"], 2);
+  }
+}
+
 TEST_F(Gravity, WritesValuesOfVerticesThatReadersSkip) {
   write("rod.obj", ellipsoid_obj(3, 0.5, 0.4, 31, 64));  // most of its picture is sky
   const auto result =
