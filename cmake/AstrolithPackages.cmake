@@ -17,6 +17,7 @@ if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
   find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs ml)  # images in, random forests
+  pkg_check_modules(GDAL REQUIRED IMPORTED_TARGET gdal)  # rasters in
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(CGAL REQUIRED)              # repair of meshes
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms

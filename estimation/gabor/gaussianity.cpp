@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "estimation/gabor/image/missing_ground.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
@@ -355,6 +356,11 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
         fmt::format(" It is small, though: {} x {} pixels are little evidence.", image.width, image.height);
   }
   return result;
+}
+
+GreyImage known_texture(const GreyImage& image) {
+  GreyImage part = largest_whole_part(image);
+  return std::min(part.width, part.height) < 32 ? image : part;
 }
 
 }  // namespace astrolith

@@ -42,4 +42,8 @@ struct Gaussianity {
 // kRoughly is kOutside for any p. Throws WorkError when progress asks to stop.
 Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const Progress& progress = {});
 
+// What of an image is tested: all of it, or of one with missing pixels the largest part without any, if its
+// sides are >= 32.
+GreyImage known_texture(const GreyImage& image);
+
 }  // namespace astrolith

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/gabor/image/image_channels.h"
+#include "estimation/gabor/image/missing_ground.h"
 #include "numerics/errors.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
@@ -151,7 +152,7 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
       return report(progress, (static_cast<double>(k) + done) / count, words);
     };
     channel.fit = fit_gabor_lobes(channel.exemplar, name, options.fit, share);
-    channel.gaussianity = tested(channel.exemplar, options.seed,
+    channel.gaussianity = tested(known_texture(channel.exemplar), options.seed,
                                  [&](double, std::string_view words) { return share(1.0, words); });
   }
   return photo;

@@ -82,7 +82,7 @@ def fit_texture(
     Parameters
     ----------
     image
-        The name of a PNG, JPEG or TIFF file, or (height, width) or (height, width, 3) uint8, uint16 (full scale
+        The name of a file that the program reads, or (height, width) or (height, width, 3) uint8, uint16 (full scale
         becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
     spectrum
         Whether the result shall have the power spectrum that ``fit_gabor --spectrum`` writes; or its file.

@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options) {
   layer.name = options.layer_name;
   if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (1e3 * metres_of(options.unit));
-  if (options.height_rms >= 0.0) layer.height_rms = options.height_rms;
+  layer.height_rms =
+      options.height_rms >= 0.0 ? options.height_rms : layer.height_rms * options.unit_per_value;
   Recipe recipe;
   recipe.length_unit = options.mm_per_px > 0.0 ? options.unit : "px";
   recipe.seed = options.seed;

@@ -1,6 +1,7 @@
 #include "tasks/estimation/fit_gabor.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/image/missing_ground.h"
 #include "estimation/gabor/spectrum/photo_period.h"
 #include "numerics/errors.h"
 #include "numerics/files/npy_file.h"
@@ -32,8 +34,11 @@ constexpr double kMostVariance = 0.95;
 void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option(
          "image", o.image,
-         "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
-         "alpha is ignored, of several pages or frames the first is taken")
+         "photo (PNG, JPEG, WebP) or raster (TIFF, GeoTIFF, JPEG 2000, ISIS cube, PDS image and others), at "
+         "least 32 x 32. Alpha is ignored, of several pages or frames the first is taken. A height map "
+         "states "
+         "the size of its pixels, its heights and what is missing, and then needs no --mm-per-px and no "
+         "--height-rms")
       .required()
       .reads();
   app.add_option(
@@ -76,18 +81,20 @@ void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
 void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
       .check(in_range(1, 1000));
-  app.add_option(
-         "--mm-per-px", o.mm_per_px,
-         "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
+  app.add_option("--mm-per-px", o.mm_per_px,
+                 "size of an image pixel on the ground in millimetres; without it the size that the file "
+                 "states, else "
+                 "lengths in the recipe are pixels")
       .check(above_zero())
       .default_text("");
-  app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
+  app.add_option("--unit", o.unit, "length unit of the recipe where the size of pixels is known")
       .check(one_of({"m", "km"}));
   app.add_option(
          "--height-rms", o.height_rms,
          "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
-         "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
-         "the image is a height map in that unit")
+         "without this the layer has the heights of a height map, and of another image its own contrast "
+         "(full "
+         "scale = 1)")
       .check(zero_or_more())
       .default_text("");
 }
@@ -149,6 +156,7 @@ void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions&
 // A photo that repeats itself is one period as often as it has room for. Its spectrum has lines and nothing
 // between them, which no few lobes resemble.
 void take_one_period(const PhotoFitArguments& o, Job& job, std::vector<GreyImage>& planes) {
+  if (o.has_gaps) return;  // gaps break the repetition
   const PhotoPeriod period = find_period(planes, job.progress("photo"));
   if (!period.found()) return;
   planes = one_period(std::move(planes), period, kSmallestExemplarSide);
@@ -162,8 +170,63 @@ void take_one_period(const PhotoFitArguments& o, Job& job, std::vector<GreyImage
 }
 
 PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
-  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit,
-          o.height_rms, job.seed};
+  const bool in_metres = o.heights_in_metres && o.mm_per_px > 0.0;
+  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(),
+          o.mm_per_px,
+          o.unit,
+          o.height_rms,
+          job.seed,
+          in_metres ? 1.0 / metres_of(o.unit) : 1.0};
+}
+
+// The side of a pixel in metres that the file states.
+double stated_side(const StatedScale& scale, const std::string& name) {
+  constexpr double kNearlySquare = 1.05;
+  const auto [less, more] = std::minmax(scale.pixel_width, scale.pixel_height);
+  if (scale.sheared || more > kNearlySquare * less) {
+    throw InputError(fmt::format(
+        "{}: its pixels are {:.4g} m wide and {:.4g} m high{}; project it to square ones (gdalwarp), or give "
+        "--mm-per-px",
+        name, scale.pixel_width, scale.pixel_height, scale.sheared ? ", and slanted" : ""));
+  }
+  constexpr double kSmallest = 1e-6, kLargest = 1e6;
+  const double side = std::sqrt(less * more);
+  if (side >= kSmallest && side <= kLargest) return side;
+  throw InputError(
+      fmt::format("{}: states pixels of {:.4g} m, which no map has; give --mm-per-px", name, side));
+}
+
+std::string in_brackets(const std::string& words) { return words.empty() ? "" : " (" + words + ")"; }
+
+// What the file states of its scale is taken where no option gives it, and said.
+void take_stated_scale(const Job& job, const ColorImageFile& photo, PhotoFitArguments& o) {
+  const double missing = missing_share(photo.planes.front());
+  o.has_gaps = missing > 0.0;
+  std::vector<std::string> words;
+  if (photo.scale && photo.scale->pixel_width > 0.0) {
+    const StatedScale& s = *photo.scale;
+    if (o.mm_per_px > 0.0) {
+      words.push_back(fmt::format("--mm-per-px {:g} counts, and not the file's pixels of {:.7g} m{}",
+                                  o.mm_per_px, s.pixel_width, in_brackets(s.pixel_source)));
+    } else {
+      const double side = stated_side(s, o.image);
+      o.mm_per_px = 1e3 * side;
+      words.push_back(fmt::format("pixels of {:.7g} m{}", side, in_brackets(s.pixel_source)));
+    }
+  }
+  if (photo.scale && photo.scale->heights) {
+    o.heights_in_metres = true;
+    const double rms = std::sqrt(known_variance(photo.planes.front()));
+    words.push_back(fmt::format(
+        "heights in metres{} of rms {:.4g} m{}", in_brackets(photo.scale->height_source), rms,
+        o.height_rms >= 0.0 ? fmt::format(", where --height-rms {:g} counts", o.height_rms) : ""));
+  }
+  if (missing > 0.0) words.push_back(fmt::format("{:.2g} % of the pixels are missing", 100.0 * missing));
+  if (!words.empty()) job.say(fmt::format("{}: {}", o.image, fmt::join(words, "; ")));
+  if (o.heights_in_metres && !(o.mm_per_px > 0.0) && !(o.height_rms >= 0.0))
+    job.say(
+        "note: the file states no size of pixels, so lengths are pixels and a height of 1 m is one; give "
+        "--mm-per-px");
 }
 
 void set_provenance(const Job& job, const PhotoFitArguments& o, Recipe& recipe) {
@@ -265,12 +328,21 @@ void say_phases(const TextureFit& fit, const Job& job) {
   job.say(fit.gaussianity.value().sentence);
 }
 
+void say_gaps(const TextureFit& fit, const Job& job) {
+  const GreyImage& part = fit.photo.front();
+  job.say(fit.exemplar
+              ? fmt::format("missing pixels: the exemplar is the largest part without gaps, {} x {} pixels",
+                            part.width, part.height)
+              : "missing pixels: for the spectrum, noise with the spectrum of the others stands in for them");
+}
+
 void say_result(const TextureFit& fit, const PhotoFitArguments& o, const Job& job) {
-  if (o.mm_per_px > 0.0 && o.height_rms < 0.0) {
+  if (o.mm_per_px > 0.0 && o.height_rms < 0.0 && !o.heights_in_metres) {
     job.say(fmt::format(
         "note: without --height-rms white is a height of 1 {}; half a pixel is --height-rms {:.3g}", o.unit,
         0.5e-3 * o.mm_per_px / metres_of(o.unit)));
   }
+  if (o.has_gaps) say_gaps(fit, job);
   if (fit.lobes) say_lobes(*fit.lobes, o, job);
   if (fit.model == TextureModel::kPhase) say_phases(fit, job);
   if (fit.exemplar) say_exemplar(*fit.exemplar, job);
@@ -302,11 +374,12 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   check_model(job, o);
   require_outputs(o);
   if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
-  const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};
-  predict_memory(job, o, options.photo);
+  predict_memory(job, o, photo_options(job, o));
   ColorImageFile photo =
-      o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, options.photo.colors);
+      o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, o.channels == "pca");
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
+  take_stated_scale(job, photo, o);
+  const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};
   if (!report(job.progress("photo"), 0.0, "read")) throw WorkError(o.image + ": stopped; nothing is written");
   flatten(photo.planes, o.image, options.photo);
   take_one_period(o, job, photo.planes);

@@ -23,9 +23,10 @@ struct PhotoFitArguments {
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";
-  double mm_per_px = 0.0;      // 0 = no physical scale
-  double height_rms = -1.0;    // negative = the exemplar's own
-  double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
+  double mm_per_px = 0.0;                            // 0 = no physical scale
+  double height_rms = -1.0;                          // negative = the exemplar's own
+  bool heights_in_metres = false, has_gaps = false;  // what the file is found to be while it is read
+  double max_memory_gb = 0.0;                        // 0 = three quarters of the machine's
   PhotoFitOptions photo;
 };
 

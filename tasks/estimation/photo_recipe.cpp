@@ -9,7 +9,7 @@ GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel,
   GaborLayer layer = layer_of(channel, first);
   layer.name = o.layer_name;
   layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_of(o.unit)) : 1.0;
-  if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
+  if (first) layer.height_rms = o.height_rms >= 0.0 ? o.height_rms : layer.height_rms * o.unit_per_value;
   return layer;
 }
 

@@ -15,6 +15,7 @@ struct PhotoRecipeOptions {
   std::string unit = "m";    // "m" or "km", where mm_per_px is given
   double height_rms = -1.0;  // of the first layer, length units; negative: the exemplar's own contrast
   std::uint64_t seed = 1;
+  double unit_per_value = 1.0;  // length units of a grey value of 1, for the exemplar's own contrast
 };
 
 // The recipe, whose provenance states what the fit achieved. Tool, input and options of the provenance are

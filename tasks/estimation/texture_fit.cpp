@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
+#include "estimation/gabor/exemplar/completed_image.h"
 #include "estimation/gabor/exemplar/phase_exemplar.h"
+#include "estimation/gabor/image/missing_ground.h"
+#include "numerics/errors.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
@@ -24,12 +28,26 @@ void make_random_phases(const std::string& name, const TextureFitOptions& option
                         TextureFit& fit) {
   fit.image = phase_exemplar(fit.photo, name, options.recipe.seed);
   fit.recipe = exemplar_recipe(*fit.image, options.recipe);
-  fit.gaussianity = test_gaussianity(fit.luma(), options.photo.seed, progress);
+  fit.gaussianity = test_gaussianity(known_texture(fit.luma()), options.photo.seed, progress);
+}
+
+// An exemplar holds no missing ground.
+void take_whole_part(std::vector<GreyImage>& photo, const std::string& name) {
+  if (photo.front().missing.empty()) return;
+  for (GreyImage& plane : photo) plane = largest_whole_part(plane);
+  const GreyImage& part = photo.front();
+  if (std::min(part.width, part.height) >= kLeastTextureSide) return;
+  throw InputError(
+      fmt::format("{}: its largest part without missing pixels is {} x {}, too small for an exemplar; fill "
+                  "the gaps, or take "
+                  "--model gabor",
+                  name, part.width, part.height));
 }
 
 void take_exemplar(const std::string& name, const TextureFitOptions& options, const Progress& progress,
                    TextureFit& fit) {
   const std::uint64_t seed = options.recipe.seed;
+  take_whole_part(fit.photo, name);
   fit.exemplar = fit.photo.size() == 1 ? prepare_exemplar(fit.photo.front(), name, seed, progress)
                                        : prepare_exemplar(fit.photo, name, seed, progress);
   fit.image = fit.exemplar->layer;
@@ -80,11 +98,14 @@ TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,
                        const TextureFitOptions& options, const StageProgress& progress) {
   TextureFit fit;
   fit.photo = std::move(photo);
+  for (GreyImage& plane : fit.photo)
+    plane = completed(std::move(plane), options.photo.seed, progress("gaps"));
   if (!options.model) {
     // What one of the models would refuse is refused before the comparison.
     require_exemplar(fit.luma(), name);
     if (fit.photo.size() == 3) require_colors(fit.photo, name);
-    fit.choice = choose_model(fit.luma(), name, options.photo.fit, options.recipe.seed, progress("models"));
+    fit.choice = choose_model(largest_whole_part(fit.luma()), name, options.photo.fit, options.recipe.seed,
+                              progress("models"));
   }
   fit.model = options.model ? *options.model : fit.choice->taken;
   switch (fit.model) {

@@ -39,9 +39,8 @@ struct TextureFit {
 std::optional<TextureModel> model_named(const std::string& name);
 
 // Fits a photo, which messages call `name`: one plane of grey, or red, green and blue, without its trend
-// (flatten()). A fit of lobes that is
-// asked to stop is the best so far. Throws as choose_model(), fit_planes(), phase_exemplar() and
-// prepare_exemplar() do.
+// (flatten()). A fit of lobes that is asked to stop is the best so far. Throws as choose_model(),
+// fit_planes(), phase_exemplar() and prepare_exemplar() do.
 TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,
                        const TextureFitOptions& options, const StageProgress& progress);
 

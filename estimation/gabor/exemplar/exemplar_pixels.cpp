@@ -58,7 +58,7 @@ ExemplarImage colors_in_16_bits(const std::vector<GreyImage>& planes) {
 }
 
 GreyImage luma_of(const std::vector<GreyImage>& planes) {
-  GreyImage luma{planes[0].width, planes[0].height, {}};
+  GreyImage luma{planes[0].width, planes[0].height, {}, planes[0].missing};
   luma.values.reserve(planes[0].values.size());
   for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
     luma.values.push_back(0.2126 * planes[0].values[i] + 0.7152 * planes[1].values[i] +

@@ -1,4 +1,4 @@
-// An exemplar: a grey image in memory.
+// An exemplar: a grey image in memory, some pixels of which may be missing.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,9 @@ struct GreyImage {
   int width = 0;
   int height = 0;
   std::vector<double> values;
+  // Where the file has no value (missing_ground.h): a pixel is missing where this is true. Empty: none is. A
+  // missing pixel has a value that continues its surroundings smoothly.
+  std::vector<bool> missing = {};
 
   double at(int x, int y) const {
     return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -23,6 +26,11 @@ struct GreyImage {
     result.values.reserve(static_cast<std::size_t>(part_width) * static_cast<std::size_t>(part_height));
     for (int y = top; y < top + part_height; ++y) {
       for (int x = left; x < left + part_width; ++x) result.values.push_back(at(x, y));
+    }
+    if (missing.empty()) return result;
+    for (int y = top; y < top + part_height; ++y) {
+      const auto row = missing.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
+      result.missing.insert(result.missing.end(), row, row + part_width);
     }
     return result;
   }

@@ -2,127 +2,190 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
 
-#include "estimation/gabor/image/image_codec_internal.h"
+#include "estimation/gabor/image/missing_ground.h"
+#include "estimation/gabor/image/photo_codec_internal.h"
+#include "estimation/gabor/image/raster_file_internal.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
 
-ImageHeader read_fitting_header(const std::filesystem::path& file) {
-  ImageHeader header = read_image_header(file);
-  const double pixels = static_cast<double>(header.width) * header.height;
-  if (pixels > kLargestImagePixels) {
-    throw InputError(fmt::format(
-        "{}: {} x {} pixels would take {:.0f} GB; cut out or scale down to at most "
-        "{:.0f} million pixels, such as 8192 x 8192",
-        file.string(), header.width, header.height, 18.0 * pixels / 1e9, kLargestImagePixels / 1e6));
-  }
-  return header;
-}
-
-// The stored number that becomes 1.
-double full_scale(const cv::Mat& mat, const std::string& name) {
-  switch (mat.depth()) {
-    case CV_8U:
-      return 255.0;
-    case CV_16U:
-      return 65535.0;
-    case CV_32F:
-    case CV_64F:
-      return 1.0;
-    default:
-      throw InputError(name +
-                       ": its pixels are signed integers; save it with 8 or 16 bits unsigned, or as floats");
-  }
-}
-
-// Float images may hold any number. A larger value is a "no data" mark, or its unit is too small.
-constexpr double kLargestValue = 1e5;
-
-void require_usable(double value, int x, int y, const std::string& name) {
-  if (std::abs(value) <= kLargestValue) return;  // false for NaN
+void require_fitting(double width, double height, const std::filesystem::path& file) {
+  const double pixels = width * height;
+  if (pixels <= kLargestImagePixels) return;
   throw InputError(
-      fmt::format("{}: pixel ({}, {}): the value {} is not finite or beyond {:g}; fill such "
-                  "pixels (no data?) or rescale the image",
-                  name, x, y, value, kLargestValue));
+      fmt::format("{}: {} x {} pixels would take {:.0f} GB; cut out or scale down to at most "
+                  "{:.0f} million pixels, such as 8192 x 8192",
+                  file.string(), width, height, 18.0 * pixels / 1e9, kLargestImagePixels / 1e6));
 }
 
-// Calls take(pixel) with the scaled channels of every pixel, row by row.
-template <typename Take>
-void for_each_pixel(const cv::Mat& mat, const std::string& name, const Take& take) {
-  const double scale = 1.0 / full_scale(mat, name);
-  const int channels = mat.channels();
-  cv::Mat row;
-  for (int y = 0; y < mat.rows; ++y) {
-    mat.row(y).convertTo(row, CV_64F, scale);
-    const double* p = row.ptr<double>(0);
-    for (int x = 0; x < mat.cols; ++x, p += channels) {
-      for (int c = 0; c < channels; ++c) require_usable(p[c], x, y, name);
-      take(p);
+// A larger value is a mark for no data that the file does not name, or its unit is too small.
+constexpr double kLargestValue = 1e9;
+
+void require_usable(const GreyImage& plane, const std::string& name) {
+  for (std::size_t i = 0; i < plane.values.size(); ++i) {
+    const double value = plane.values[i];
+    if (!(std::abs(value) > kLargestValue)) continue;  // true for NaN
+    const auto width = static_cast<std::size_t>(plane.width);
+    throw InputError(
+        fmt::format("{}: pixel ({}, {}): the value {} is beyond {:g}; name it as no data (gdal_translate "
+                    "-a_nodata {}) or rescale the image",
+                    name, i % width, i / width, value, kLargestValue, value));
+  }
+}
+
+// The largest share of missing pixels.
+constexpr double kMostMissing = 0.5;
+
+void require_known(const GreyImage& plane, const std::string& name) {
+  const auto count =
+      std::count_if(plane.values.begin(), plane.values.end(), [](double v) { return std::isnan(v); });
+  const double share = static_cast<double>(count) / static_cast<double>(plane.values.size());
+  if (share <= kMostMissing) return;
+  throw InputError(fmt::format("{}: {:.0f} % of the pixels have no value; cut out a part with fewer gaps",
+                               name, 100.0 * share));
+}
+
+// Usual marks for no data that a file may hold without naming them. One is taken for missing if it is the
+// lowest value by more than all other values differ.
+std::optional<std::string> unmark(GreyImage& plane) {
+  double lowest = std::numeric_limits<double>::infinity(), next = lowest, highest = -lowest;
+  for (const double v : plane.values) {
+    if (std::isnan(v)) continue;
+    highest = std::max(highest, v);
+    if (v < lowest)
+      next = std::exchange(lowest, v);
+    else if (v > lowest)
+      next = std::min(next, v);
+  }
+  constexpr double kMarks[] = {-999.0, -9999.0, -32767.0, -32768.0, -99999.0};
+  if (std::find(std::begin(kMarks), std::end(kMarks), lowest) == std::end(kMarks)) return {};
+  if (!(next - lowest > highest - next) || next == highest) return {};
+  for (double& v : plane.values) {
+    if (v == lowest) v = std::numeric_limits<double>::quiet_NaN();
+  }
+  return fmt::format(
+      "{:g} lies far below all other values and is taken for no data, though the file names none", lowest);
+}
+
+// The image as an EXIF orientation of 1 .. 8 turns it upright: those above 4 exchange rows and columns, and
+// then some mirror the columns or the rows.
+GreyImage upright(GreyImage image, int orientation) {
+  if (orientation < 2 || orientation > 8) return image;
+  const bool turned = orientation > 4;
+  const bool mirrored = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+  const bool flipped = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+  GreyImage result{turned ? image.height : image.width, turned ? image.width : image.height, {}};
+  result.values.reserve(image.values.size());
+  for (int y = 0; y < result.height; ++y) {
+    for (int x = 0; x < result.width; ++x) {
+      const int u = mirrored ? result.width - 1 - x : x, v = flipped ? result.height - 1 - y : y;
+      result.values.push_back(turned ? image.at(v, u) : image.at(u, v));
     }
   }
+  return result;
 }
 
-GreyImage empty_plane(const cv::Mat& mat) {
-  GreyImage plane{mat.cols, mat.rows, {}};
-  plane.values.reserve(mat.total());
-  return plane;
+// Collects rows of grey or colours into one plane or three.
+TakeRow into(std::vector<GreyImage>& planes) {
+  return [&planes](std::span<const double> row, int channels) {
+    const auto count = static_cast<std::size_t>(channels);
+    for (std::size_t i = 0; i < row.size(); i += count) {
+      if (planes.size() == 1 && channels == 3) {
+        planes[0].values.push_back(0.0722 * row[i + 2] + 0.7152 * row[i + 1] + 0.2126 * row[i]);
+      } else {
+        for (std::size_t k = 0; k < planes.size(); ++k)
+          planes[k].values.push_back(row[i + (channels == 3 ? k : 0)]);
+      }
+    }
+    for (GreyImage& plane : planes) {
+      plane.width = static_cast<int>(row.size() / count);
+      ++plane.height;
+    }
+  };
 }
 
-std::vector<std::string> remarks_on(const ImageHeader& header, double not_opaque) {
-  std::vector<std::string> remarks;
-  if (not_opaque > 0.0) {
-    remarks.push_back(fmt::format(
-        "alpha ignored: {:.1f} % of the pixels are not opaque, and count with the colour stored under it",
-        100.0 * not_opaque));
+ColorImageFile empty_planes(std::size_t count, double pixels) {
+  ColorImageFile result;
+  result.planes.resize(count);
+  for (GreyImage& plane : result.planes) plane.values.reserve(static_cast<std::size_t>(pixels));
+  return result;
+}
+
+// Heights on the ground count from their mean: a radius of 1.7e6 m leaves few digits for a relief.
+void take_mean_away(GreyImage& heights) {
+  const double mean = known_mean(heights);
+  for (double& v : heights.values) v -= mean;
+}
+
+ColorImageFile read_raster(const std::filesystem::path& file, std::size_t count) {
+  RasterFile raster(file);
+  require_fitting(raster.width(), raster.height(), file);
+  ColorImageFile result = empty_planes(count, static_cast<double>(raster.width()) * raster.height());
+  raster.read(into(result.planes));
+  result.remarks = raster.remarks();
+  result.scale = raster.scale();
+  const bool heights = result.scale && result.scale->heights;
+  for (GreyImage& plane : result.planes) {
+    plane = upright(std::move(plane), raster.orientation());
+    if (const auto mark = unmark(plane); mark && &plane == &result.planes.front())
+      result.remarks.push_back(*mark);
+    require_usable(plane, file.string());
+    require_known(plane, file.string());
+    fill_missing(plane);
+    if (heights && result.scale->pixel_width > 0.0) take_mean_away(plane);
   }
-  if (header.more_pages) {
-    remarks.push_back(header.format == "PNG" ? "animated: only the first frame used"
-                                             : "only the first of several pages used");
-  }
-  return remarks;
+  return result;
+}
+
+ColorImageFile read_planes(const std::filesystem::path& file, std::size_t count) {
+  const std::optional<PhotoHeader> header = read_photo_header(file);
+  if (!header) return read_raster(file, count);
+  require_fitting(header->width, header->height, file);
+  ColorImageFile result = empty_planes(count, static_cast<double>(header->width) * header->height);
+  const double not_opaque = share_not_opaque(file, *header);
+  if (not_opaque > 0.0) result.remarks.push_back(alpha_remark(not_opaque));
+  if (header->more_frames) result.remarks.emplace_back("animated: only the first frame used");
+  read_photo(file, into(result.planes));
+  return result;
 }
 
 }  // namespace
 
+std::string alpha_remark(double share) {
+  return fmt::format(
+      "alpha ignored: {:.1f} % of the pixels are not opaque, and count with the colour stored under it",
+      100.0 * share);
+}
+
 ImageSize read_image_size(const std::filesystem::path& file) {
-  const ImageHeader header = read_fitting_header(file);
-  return {static_cast<int>(header.width), static_cast<int>(header.height)};
+  ImageSize size;
+  if (const std::optional<PhotoHeader> header = read_photo_header(file)) {
+    require_fitting(header->width, header->height, file);
+    size = {static_cast<int>(header->width), static_cast<int>(header->height)};
+  } else {
+    const RasterFile raster(file);
+    require_fitting(raster.width(), raster.height(), file);
+    size = {raster.width(), raster.height()};
+  }
+  return size;
 }
 
 ImageFile read_grey_image(const std::filesystem::path& file) {
-  const ImageHeader header = read_fitting_header(file);
-  ImageFile result{{}, remarks_on(header, share_not_opaque(file, header))};
-  const cv::Mat mat = decode_image(file, header);
-  result.image = empty_plane(mat);
-  const bool colors = mat.channels() == 3;
-  for_each_pixel(mat, file.string(), [&](const double* p) {
-    // OpenCV orders channels blue, green, red.
-    result.image.values.push_back(colors ? 0.0722 * p[0] + 0.7152 * p[1] + 0.2126 * p[2] : p[0]);
-  });
-  return result;
+  ColorImageFile read = read_planes(file, 1);
+  return {std::move(read.planes.front()), std::move(read.remarks), read.scale};
 }
 
-ColorImageFile read_color_image(const std::filesystem::path& file) {
-  const ImageHeader header = read_fitting_header(file);
-  ColorImageFile result{{}, remarks_on(header, share_not_opaque(file, header))};
-  const cv::Mat mat = decode_image(file, header);
-  result.planes.assign(3, empty_plane(mat));
-  const int last = mat.channels() - 1;
-  for_each_pixel(mat, file.string(), [&](const double* p) {
-    for (int c = 0; c < 3; ++c) {
-      result.planes[static_cast<std::size_t>(c)].values.push_back(p[last == 2 ? 2 - c : 0]);
-    }
-  });
-  return result;
-}
+ColorImageFile read_color_image(const std::filesystem::path& file) { return read_planes(file, 3); }
 
 ColorImageFile read_image(const std::filesystem::path& file, bool colors) {
-  if (colors) return read_color_image(file);
-  ImageFile grey = read_grey_image(file);
-  return {{std::move(grey.image)}, std::move(grey.remarks)};
+  return read_planes(file, colors ? 3 : 1);
 }
 
 }  // namespace astrolith

@@ -2,21 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/image/height_map.h"
 
 namespace astrolith {
 
 struct ImageFile {
   GreyImage image;
   std::vector<std::string> remarks;  // the parts of the file that were not used, such as "alpha ignored"
+  std::optional<StatedScale> scale = {};
 };
 
 struct ColorImageFile {
   std::vector<GreyImage> planes;  // red, green and blue, of the same size, or grey alone
   std::vector<std::string> remarks;
+  std::optional<StatedScale> scale = {};
 };
 
 struct ImageSize {
@@ -28,12 +32,15 @@ struct ImageSize {
 // about 1.2 GB in grey and 2.5 GB in colours.
 inline constexpr double kLargestImagePixels = 67108864.0;
 
-// The functions below read PNG, JPEG and TIFF, which they tell by their first bytes. A channel has 8 or 16
-// bits, or is a 16-, 32- or 64-bit float. Palettes are expanded and the EXIF orientation is honoured. Alpha
-// is ignored: the stored colours of transparent pixels count. If a file has several pages or frames, the
-// first is read. Integers are scaled so that full scale is 1; floats keep their values. The size is checked
-// before anything is decoded. The functions throw InputError for a file that is missing, of another kind,
-// damaged or too large, and for values that are not finite or beyond 1e5.
+// The functions below read photos (PNG, JPEG, WebP) and rasters (TIFF, GeoTIFF and others: docs/pictures.md),
+// which they tell by their first bytes. Palettes are expanded and the EXIF orientation is honoured. Alpha is
+// ignored: the stored colours of transparent pixels count, unless the file says that alpha is multiplied into
+// them, which is undone. If a file has several pages or frames, the first is read. Integers are scaled so
+// that full scale is 1. Floats, signed integers and values with a scale or a unit of their own are as the
+// file states them, heights in metres; heights with a size of pixels are heights above their mean. Pixels
+// without a value are missing (grey_image.h). The size is checked before anything is decoded. The functions
+// throw InputError for a file that is missing, of another kind, damaged or too large, for values beyond 1e9,
+// and where fewer than half of the pixels have a value.
 
 // Width and height as stored, in pixels, from the header alone.
 ImageSize read_image_size(const std::filesystem::path& file);
@@ -47,5 +54,8 @@ ColorImageFile read_color_image(const std::filesystem::path& file);
 
 // Reads a colour image, or a grey one as the only plane.
 ColorImageFile read_image(const std::filesystem::path& file, bool colors);
+
+// The remark on pixels that are not opaque, by their share in (0, 1].
+std::string alpha_remark(double share);
 
 }  // namespace astrolith

@@ -7,6 +7,7 @@
 
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/picture/image_file.h"
 #include "tests/support/data.h"
 #include "tests/tasks/inputs.h"
 #include "tests/tasks/job_runner.h"
@@ -204,6 +205,59 @@ TEST_F(FitGabor, EveryOutputIsWritten) {
     EXPECT_TRUE(exists("report/" + name)) << name;
   }
   EXPECT_EQ(json("s.json")["channels"].size(), 1u);
+}
+
+// A height map of 64 x 64 pixels of 2 m, with waves of 3 m rms about -1850 m; its first columns may be
+// missing.
+std::vector<float> heights(int missing_columns) {
+  std::vector<float> result;
+  for (int i = 0; i < 64 * 64; ++i) {
+    const int x = i % 64, y = i / 64;
+    const double wave = std::sin(0.7 * x + 0.2 * y) + std::sin(1.1 * y - 0.3 * x) + std::sin(0.5 * (x + y));
+    result.push_back(x < missing_columns ? std::nanf("")
+                                         : static_cast<float>(-1850.0 + std::sqrt(6.0) * wave));
+  }
+  return result;
+}
+
+TEST_F(FitGabor, AHeightMapNeedsNoOptions) {
+  write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "dem.tif");
+  const std::string said = succeed("dem.tif -o rock.json");
+  EXPECT_TRUE(has(said, "dem.tif: pixels of 2 m; heights in metres (no unit is stated) of rms 3"));
+  EXPECT_FALSE(has(said, "white is a height"));
+  GaborLayer layer = std::get<GaborLayer>(recipe().layers[0]);
+  EXPECT_EQ(recipe().length_unit, "m");
+  EXPECT_DOUBLE_EQ(layer.pixel_size, 2.0);
+  EXPECT_NEAR(layer.height_rms, 3.0, 0.15);
+  succeed("dem.tif -o rock.json --unit km");
+  layer = std::get<GaborLayer>(recipe().layers[0]);
+  EXPECT_DOUBLE_EQ(layer.pixel_size, 0.002);
+  EXPECT_NEAR(layer.height_rms, 0.003, 0.00015);
+}
+
+TEST_F(FitGabor, OptionsWinOverTheFile) {
+  write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "dem.tif");
+  const std::string said = succeed("dem.tif -o rock.json --mm-per-px 1000 --height-rms 5");
+  EXPECT_TRUE(has(said, "--mm-per-px 1000 counts, and not the file's pixels of 2 m"));
+  EXPECT_TRUE(has(said, "where --height-rms 5 counts"));
+  const GaborLayer layer = std::get<GaborLayer>(recipe().layers[0]);
+  EXPECT_DOUBLE_EQ(layer.pixel_size, 1.0);
+  EXPECT_DOUBLE_EQ(layer.height_rms, 5.0);
+}
+
+TEST_F(FitGabor, MissingGroundIsLeftOut) {
+  write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "whole.tif");
+  write_geotiff(heights(7), 64, 64, 2.0, "", folder_ / "dem.tif");
+  succeed("whole.tif -o rock.json");
+  const double whole = std::get<GaborLayer>(recipe().layers[0]).height_rms;
+  EXPECT_TRUE(has(succeed("dem.tif -o rock.json"), "11 % of the pixels are missing"));
+  EXPECT_NEAR(std::get<GaborLayer>(recipe().layers[0]).height_rms, whole, 0.02 * whole);
+  EXPECT_TRUE(
+      has(succeed("dem.tif -o rock.json --model exemplar"), "the largest part without gaps, 57 x 64"));
+  write_geotiff(heights(40), 64, 64, 2.0, "", folder_ / "half.tif");
+  refuse("half.tif -o rock.json", "62 % of the pixels have no value");
+  write_geotiff(heights(31), 64, 64, 2.0, "", folder_ / "half.tif");
+  succeed("half.tif -o rock.json --model phase");
 }
 
 TEST_F(FitGabor, BadFilesAndOddOptionsAreRefused) {

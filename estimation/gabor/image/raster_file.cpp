@@ -1,0 +1,346 @@
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <fmt/format.h>
+#include <gdal_frmts.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <mutex>
+#include <regex>
+#include <utility>
+
+#include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/image/raster_file_internal.h"
+#include "estimation/gabor/image/tiff_tags_internal.h"
+#include "numerics/errors.h"
+#include "numerics/portable_angles.h"
+
+namespace astrolith {
+namespace {
+
+// The formats that are read. None runs what a file says, joins other files by name or asks a network.
+struct Format {
+  const char* name;
+  void (*register_driver)();
+};
+constexpr std::array kFormats{
+    Format{"GTiff", GDALRegister_GTiff},     Format{"ISIS3", GDALRegister_ISIS3},
+    Format{"ISIS2", GDALRegister_ISIS2},     Format{"PDS", GDALRegister_PDS},
+    Format{"PDS4", GDALRegister_PDS4},       Format{"VICAR", GDALRegister_VICAR},
+    Format{"ENVI", GDALRegister_ENVI},       Format{"EHdr", GDALRegister_EHdr},
+    Format{"FITS", GDALRegister_FITS},       Format{"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
+    Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA}};
+
+// While an object of this class lives, this thread's GDAL prints nothing, writes nothing beside its input and
+// reads no other file than those that its format names, none of them from a network.
+class QuietGdal {
+ public:
+  QuietGdal() {
+    static std::once_flag registered;
+    std::call_once(registered, [] {
+      for (const Format& format : kFormats) format.register_driver();
+    });
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+  }
+  QuietGdal(const QuietGdal&) = delete;
+  QuietGdal& operator=(const QuietGdal&) = delete;
+  ~QuietGdal() { CPLPopErrorHandler(); }
+
+ private:
+  CPLConfigOptionSetter no_notes_{"GDAL_PAM_ENABLED", "NO", false};
+  CPLConfigOptionSetter no_folder_{"GDAL_DISABLE_READDIR_ON_OPEN", "TRUE", false};
+  CPLConfigOptionSetter small_cache_{"GDAL_CACHEMAX", "128", false};  // MB; counts at its first use only
+  CPLConfigOptionSetter no_network_{"CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false};
+};
+
+std::unique_ptr<GDALDataset> open_raster(const std::string& name) {
+  std::vector<const char*> drivers;
+  for (const Format& format : kFormats) drivers.push_back(format.name);
+  drivers.push_back(nullptr);
+  return std::unique_ptr<GDALDataset>(
+      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
+}
+
+std::string structure(GDALMajorObject& object, const char* key) {
+  const char* value = object.GetMetadataItem(key, "IMAGE_STRUCTURE");
+  return value == nullptr ? "" : value;
+}
+
+// The metres of a unit of length by its name; 0 for another unit.
+double metres_of_name(std::string unit) {
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937.0;
+  constexpr Unit kUnits[] = {{"m", 1.0},
+                             {"metre", 1.0},
+                             {"metres", 1.0},
+                             {"meter", 1.0},
+                             {"meters", 1.0},
+                             {"km", 1000.0},
+                             {"kilometre", 1e3},
+                             {"kilometres", 1e3},
+                             {"kilometer", 1e3},
+                             {"kilometers", 1e3},
+                             {"cm", 0.01},
+                             {"centimetre", 0.01},
+                             {"centimeter", .01},
+                             {"mm", 0.001},
+                             {"millimetre", 0.001},
+                             {"millimeter", .001},
+                             {"ft", kFoot},
+                             {"foot", kFoot},
+                             {"feet", kFoot},
+                             {"us survey foot", kSurveyFoot},
+                             {"ftus", kSurveyFoot},
+                             {"us-ft", kSurveyFoot},
+                             {"foot_us", kSurveyFoot}};
+  for (const Unit& known : kUnits) {
+    if (unit == known.name) return known.metres;
+  }
+  return 0.0;
+}
+
+// The unit in the label of a PDS3 image, which GDAL keeps to itself; empty where it states none.
+std::string unit_of_label(const std::string& name) {
+  constexpr std::size_t kLargestLabel = std::size_t{1} << 16;
+  std::string label(kLargestLabel, '\0');
+  std::ifstream in(name, std::ios::binary);
+  in.read(label.data(), static_cast<std::streamsize>(label.size()));
+  label.resize(static_cast<std::size_t>(in.gcount()));
+  static const std::regex unit("[\\r\\n] *UNIT *= *[\"']?([A-Za-z]+)");
+  std::smatch found;
+  return std::regex_search(label, found, unit) ? found[1].str() : "";
+}
+
+}  // namespace
+
+// The bands of values, one or three, and how stored numbers become values.
+struct RasterFile::Bands {
+  std::vector<GDALRasterBand*> values;
+  GDALRasterBand* alpha = nullptr;
+  bool premultiplied = false;  // colours are stored multiplied by alpha
+  const GDALColorTable* palette = nullptr;
+  bool white_is_zero = false;
+  bool signed_bytes = false;
+  bool isis_marks = false;  // 16-bit integers below -32752 are marks of ISIS
+  double factor = 1.0, offset = 0.0;
+  double opaque = 1.0;     // the alpha of an opaque pixel
+  std::string unit;        // of the values, as the file spells it; empty: none
+  bool as_stated = false;  // the values are the file's own, and not shares of a full scale
+  bool fourth_unused = false;
+  std::size_t not_opaque = 0;
+
+  int channels() const { return palette != nullptr ? 3 : static_cast<int>(values.size()); }
+};
+
+namespace {
+
+bool is_signed_or_float(GDALRasterBand& band) {
+  const GDALDataType type = band.GetRasterDataType();
+  return GDALDataTypeIsFloating(type) != 0 || GDALDataTypeIsSigned(type) != 0;
+}
+
+double full_scale(GDALRasterBand& band) {
+  const std::string bits = structure(band, "NBITS");
+  const int stored =
+      bits.empty() ? GDALGetDataTypeSizeBits(band.GetRasterDataType()) : std::atoi(bits.c_str());
+  return std::ldexp(1.0, std::clamp(stored, 1, 64)) - 1.0;
+}
+
+bool read_row(GDALRasterBand& band, int y, GDALDataType type, void* row) {
+  const int width = band.GetXSize();
+  return band.RasterIO(GF_Read, 0, y, width, 1, row, width, 1, type, 0, 0, nullptr) == CE_None;
+}
+
+}  // namespace
+
+void RasterFile::fail(const std::string& what) const { throw InputError(name_ + ": " + what); }
+
+RasterFile::~RasterFile() {
+  const QuietGdal quiet;
+  dataset_.reset();
+}
+
+int RasterFile::width() const { return dataset_->GetRasterXSize(); }
+int RasterFile::height() const { return dataset_->GetRasterYSize(); }
+
+RasterFile::RasterFile(const std::filesystem::path& file)
+    : name_(file.string()), bands_(std::make_unique<Bands>()) {
+  const TiffTags tags = read_tiff_tags(file);
+  orientation_ = tags.orientation;
+  bands_->premultiplied = tags.premultiplied;
+  const QuietGdal quiet;
+  dataset_ = open_raster(name_);
+  if (dataset_ == nullptr) {
+    fail(
+        "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
+        "it "
+        "as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
+  }
+  find_bands();
+  find_scale();
+}
+
+void RasterFile::find_bands() {
+  Bands& b = *bands_;
+  int count = dataset_->GetRasterCount();
+  if (count == 0) fail("holds several rasters and none by itself; take one out (gdal_translate)");
+  GDALRasterBand* const last = dataset_->GetRasterBand(count);
+  if (count > 1 && last->GetColorInterpretation() == GCI_AlphaBand) {
+    b.alpha = last;
+    b.opaque = GDALDataTypeIsFloating(last->GetRasterDataType()) != 0 ? 1.0 : full_scale(*last);
+    --count;
+  }
+  GDALRasterBand& first = *dataset_->GetRasterBand(1);
+  const bool colors = first.GetColorInterpretation() == GCI_RedBand;
+  b.fourth_unused = count == 4 && colors;
+  if (count != 1 && !b.fourth_unused && (count != 3 || (!colors && is_signed_or_float(first)))) {
+    fail(fmt::format("has {} bands, which are no red, green and blue; cut out one (gdal_translate -b 1)",
+                     count));
+  }
+  for (int k = 1; k <= std::min(count, 3); ++k) b.values.push_back(dataset_->GetRasterBand(k));
+  for (GDALRasterBand* band : b.values) {
+    int width = 0, height = 0;
+    band->GetBlockSize(&width, &height);
+    if (GDALDataTypeIsComplex(band->GetRasterDataType()) != 0)
+      fail("its pixels are complex numbers; save their magnitude as a GeoTIFF of 32-bit floats");
+    if (static_cast<double>(width) * height > kLargestImagePixels)
+      fail("its tiles are too large; save it again with smaller ones");
+  }
+  b.white_is_zero = structure(*dataset_, "MINISWHITE") == "YES";
+  const bool indices = count == 1 && GDALGetDataTypeSizeBits(first.GetRasterDataType()) <= 16;
+  b.palette = indices && !b.white_is_zero ? first.GetColorTable() : nullptr;
+  b.signed_bytes = structure(first, "PIXELTYPE") == "SIGNEDBYTE";
+  b.isis_marks =
+      std::string(dataset_->GetDriverName()).rfind("ISIS", 0) == 0 && first.GetRasterDataType() == GDT_Int16;
+  b.unit = first.GetUnitType();
+  if (b.unit.empty() && std::string(dataset_->GetDriverName()) == "PDS") b.unit = unit_of_label(name_);
+  b.factor = first.GetScale();
+  b.offset = first.GetOffset();
+  b.as_stated =
+      is_signed_or_float(first) || b.signed_bytes || b.factor != 1.0 || b.offset != 0.0 || !b.unit.empty();
+  if (!b.as_stated) b.factor = 1.0 / full_scale(first);
+}
+
+// Only a grid in degrees needs a radius to become one in metres.
+void RasterFile::find_scale() {
+  StatedScale scale;
+  std::array<double, 6> t{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
+  const bool placed = dataset_->GetGeoTransform(t.data()) == CE_None;
+  const bool stated = placed || t != std::array<double, 6>{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  if (stated) {
+    double across = 1.0, down = 1.0;
+    const OGRSpatialReference* frame = dataset_->GetSpatialRef();
+    if (frame == nullptr) {
+      scale.pixel_source = "no unit is stated";
+    } else if (frame->IsGeographic() != 0) {
+      const double radius = frame->GetSemiMajor(), angle = frame->GetAngularUnits();
+      const double latitude = (t[3] + 0.5 * width() * t[4] + 0.5 * height() * t[5]) * angle;
+      down = radius * angle;
+      across = std::abs(latitude) < 1.6 ? down * portable::cos(latitude) : 0.0;
+      scale.pixel_source = fmt::format("degrees on a body of radius {:.6g} km", radius / 1e3);
+    } else {
+      across = down = frame->GetLinearUnits();
+    }
+    const double ax = across * t[1], ay = down * t[4], bx = across * t[2], by = down * t[5];
+    scale.pixel_width = std::sqrt(ax * ax + ay * ay);
+    scale.pixel_height = std::sqrt(bx * bx + by * by);
+    scale.sheared = std::abs(ax * bx + ay * by) > 0.01 * scale.pixel_width * scale.pixel_height;
+    if (!(scale.pixel_width > 0.0 && scale.pixel_height > 0.0)) scale.pixel_width = scale.pixel_height = 0.0;
+  }
+  Bands& b = *bands_;
+  const double metres = metres_of_name(b.unit);
+  const bool many_levels = b.as_stated ? b.values.front()->GetRasterDataType() != GDT_Byte || b.signed_bytes
+                                       : full_scale(*b.values.front()) >= 65535.0;
+  const bool one = b.channels() == 1 && !b.white_is_zero;
+  if (one && (metres > 0.0 || (b.unit.empty() && scale.pixel_width > 0.0 && many_levels))) {
+    scale.heights = true;
+    if (!b.as_stated) b.factor = 1.0;
+    b.as_stated = true;
+    if (metres > 0.0) {
+      b.factor *= metres;
+      b.offset *= metres;
+    } else {
+      scale.height_source = "no unit is stated";
+    }
+  }
+  if (scale.heights || scale.pixel_width > 0.0) scale_ = scale;
+}
+
+std::vector<std::string> RasterFile::remarks() const {
+  std::vector<std::string> remarks;
+  if (bands_->not_opaque > 0 && !bands_->premultiplied && !(scale_ && scale_->heights)) {
+    remarks.push_back(
+        alpha_remark(static_cast<double>(bands_->not_opaque) / (static_cast<double>(width()) * height())));
+  }
+  if (bands_->fourth_unused) remarks.emplace_back("only the first three of four bands used");
+  if (dataset_->GetMetadataItem("SUBDATASET_2_NAME", "SUBDATASETS") != nullptr)
+    remarks.emplace_back("only the first of several pages used");
+  return remarks;
+}
+
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBeyondAll = 1e30;  // marks of ISIS and others for no data are larger
+
+}  // namespace
+
+void RasterFile::read(const TakeRow& take) {
+  const QuietGdal quiet;
+  Bands& b = *bands_;
+  const auto columns = static_cast<std::size_t>(width());
+  const auto channels = static_cast<std::size_t>(b.channels());
+  std::vector<double> stored(columns), row(columns * channels), alpha(b.alpha != nullptr ? columns : 0);
+  std::vector<std::uint8_t> valid(columns), band_valid(columns);
+  b.not_opaque = 0;
+  for (int y = 0; y < height(); ++y) {
+    bool whole = b.alpha == nullptr || read_row(*b.alpha, y, GDT_Float64, alpha.data());
+    std::fill(valid.begin(), valid.end(), std::uint8_t{0});
+    for (std::size_t k = 0; whole && k < b.values.size(); ++k) {
+      GDALRasterBand& band = *b.values[k];
+      const bool all = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_ALPHA)) != 0;
+      whole = read_row(band, y, GDT_Float64, stored.data()) &&
+              (all || read_row(*band.GetMaskBand(), y, GDT_Byte, band_valid.data()));
+      for (std::size_t x = 0; x < columns; ++x) {
+        double v = stored[x];
+        valid[x] = valid[x] || all || band_valid[x];
+        if (b.palette != nullptr) {
+          GDALColorEntry entry{};
+          b.palette->GetColorEntryAsRGB(static_cast<int>(v), &entry);
+          const double rgb[] = {entry.c1 / 255.0, entry.c2 / 255.0, entry.c3 / 255.0};
+          std::copy(rgb, rgb + 3, row.begin() + static_cast<std::ptrdiff_t>(3 * x));
+          continue;
+        }
+        if (b.signed_bytes && v > 127.0) v -= 256.0;
+        const bool mark = !(std::abs(v) < kBeyondAll) || (b.isis_marks && v < -32752.0);
+        v = b.factor * v + b.offset;
+        row[x * channels + k] = mark ? kMissing : b.white_is_zero && !b.as_stated ? 1.0 - v : v;
+      }
+    }
+    if (!whole) fail("ends too early or is damaged; fetch it again");
+    for (std::size_t x = 0; x < columns; ++x) {
+      const double opacity = b.alpha != nullptr ? alpha[x] / b.opaque : 1.0;
+      b.not_opaque += opacity < 1.0;
+      const bool erased = !(opacity > 0.0) && (b.premultiplied || (scale_ && scale_->heights));
+      for (std::size_t k = 0; k < channels; ++k) {
+        double& v = row[x * channels + k];
+        if (b.premultiplied && opacity > 0.0) v = std::min(1.0, v / opacity);
+        if (!valid[x] || erased) v = kMissing;
+      }
+    }
+    take(row, b.channels());
+  }
+}
+
+}  // namespace astrolith

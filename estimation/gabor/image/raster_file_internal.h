@@ -1,0 +1,53 @@
+// Reads rasters other than photos by GDAL: TIFF and GeoTIFF, cubes of ISIS, images of the PDS and others.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimation/gabor/image/height_map.h"
+#include "estimation/gabor/image/photo_codec_internal.h"
+
+class GDALDataset;
+
+namespace astrolith {
+
+class RasterFile {
+ public:
+  // Opens the file and decodes no pixel. Throws InputError for files of another kind and for damaged ones,
+  // for complex pixels, and for bands that are neither one height map or picture nor red, green and blue.
+  explicit RasterFile(const std::filesystem::path& file);
+  ~RasterFile();
+  RasterFile(const RasterFile&) = delete;
+  RasterFile& operator=(const RasterFile&) = delete;
+
+  int width() const;  // as stored, before the picture is turned upright
+  int height() const;
+  int orientation() const { return orientation_; }  // of EXIF, 1 .. 8
+  const std::optional<StatedScale>& scale() const { return scale_; }
+  // What was not used of the file. The share of transparent pixels is known after read().
+  std::vector<std::string> remarks() const;
+
+  // Gives the rows from the top as stored. Heights are metres where StatedScale says so. Floats, signed
+  // integers and values with a scale of their own are as the file states them, and of others the full scale
+  // is
+  // 1. A missing pixel is a NaN: one that the file calls no data or masks, one that is not finite or beyond
+  // 1e30, and one whose colours an alpha of 0 has erased. Throws InputError for damaged files.
+  void read(const TakeRow& take);
+
+ private:
+  struct Bands;
+  void find_bands();
+  void find_scale();
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string name_;
+  std::unique_ptr<GDALDataset> dataset_;
+  std::unique_ptr<Bands> bands_;
+  int orientation_ = 1;
+  std::optional<StatedScale> scale_;
+};
+
+}  // namespace astrolith

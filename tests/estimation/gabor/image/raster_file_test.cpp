@@ -1,0 +1,349 @@
+// Rasters that GDAL reads: what their files state about values, ground and gaps.
+#include <cmath>
+#include <limits>
+
+#include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/image/missing_ground.h"
+#include "synthesis/picture/image_file.h"
+#include "tests/estimation/gabor/image/raster_inputs.h"
+#include "tests/support/refusal.h"
+#include "tests/support/scratch_folder.h"
+
+namespace astrolith {
+namespace {
+
+using testing::has;
+using testing::place;
+using testing::RasterInput;
+using testing::write_raster;
+using testing::write_tiff;
+namespace fs = std::filesystem;
+
+class RasterFileTest : public ::testing::Test {
+ protected:
+  ImageFile read(const RasterInput& input, std::vector<double> values,
+                 const std::function<void(GDALDataset&)>& describe = {}) {
+    return read_grey_image(write_raster(folder / "raster", input, std::move(values), describe));
+  }
+  std::string error_of(const fs::path& file) {
+    return testing::refusal_of([&] { read_grey_image(file); });
+  }
+  static void expect_values(const GreyImage& image, const std::vector<double>& expected) {
+    ASSERT_EQ(image.values.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(image.values[i], expected[i], 1e-12) << i;
+  }
+
+  testing::ScratchFolder folder;
+};
+
+const std::vector<double> kSteps{0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
+
+TEST_F(RasterFileTest, EveryDepthHasItsFullScale) {
+  const auto shares = [&](GDALDataType type, const char* bits, double full) {
+    RasterInput input{"GTiff", type};
+    if (bits != nullptr) input.options = {bits};
+    expect_values(read(input, {0.0, full, 1.0, 2.0, 3.0, 4.0}).image,
+                  {0.0, 1.0, 1.0 / full, 2.0 / full, 3.0 / full, 4.0 / full});
+  };
+  shares(GDT_Byte, nullptr, 255.0);
+  shares(GDT_Byte, "NBITS=4", 15.0);
+  shares(GDT_UInt16, nullptr, 65535.0);
+  shares(GDT_UInt16, "NBITS=12", 4095.0);
+  shares(GDT_UInt32, nullptr, 4294967295.0);
+}
+
+TEST_F(RasterFileTest, FloatsAndSignedIntegersStayAsTheyAre) {
+  const std::vector<double> values{-2.0, 0.5, 0.0, 3.0, 65504.0, 1.0};
+  for (const GDALDataType type : {GDT_Float32, GDT_Float64})
+    expect_values(read({"GTiff", type}, values).image, values);
+  expect_values(read({"GTiff", GDT_Float32, 3, 2, 1, {"NBITS=16"}}, values).image, values);
+  const std::vector<double> whole{-128.0, 0.0, 127.0, 3.0, -1.0, 1.0};
+  for (const GDALDataType type : {GDT_Int16, GDT_Int32, GDT_Int64})
+    expect_values(read({"GTiff", type}, whole).image, whole);
+  expect_values(
+      read({"GTiff", GDT_Byte, 3, 2, 1, {"PIXELTYPE=SIGNEDBYTE"}}, {128.0, 0.0, 127.0, 3.0, 255.0, 1.0})
+          .image,
+      whole);
+}
+
+TEST_F(RasterFileTest, PlanesTilesAndCompressionMakeNoDifference) {
+  const std::vector<double> colors{65535, 0, 0,     0, 65535, 0, 0,     0, 65535,
+                                   0,     0, 65535, 0, 65535, 0, 65535, 0, 0};
+  const auto planes = [&](std::vector<const char*> options) {
+    write_raster(folder / "c.tif", {"GTiff", GDT_UInt16, 3, 2, 3, std::move(options)}, colors);
+    return read_color_image(folder / "c.tif").planes;
+  };
+  const auto together = planes({"PHOTOMETRIC=RGB"});
+  EXPECT_EQ(together[0].values, (std::vector<double>{1, 0, 0, 0, 1, 0}));
+  for (const char* option : {"INTERLEAVE=BAND", "TILED=YES", "COMPRESS=LZW"}) {
+    const auto other = planes({"PHOTOMETRIC=RGB", option});
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(other[k].values, together[k].values) << option;
+  }
+}
+
+TEST_F(RasterFileTest, WhiteMayBeZero) {
+  expect_values(
+      read({"GTiff", GDT_UInt16, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {65535, 0, 13107, 0, 0, 0}).image,
+      {0.0, 1.0, 0.8, 1.0, 1.0, 1.0});
+  expect_values(read({"GTiff", GDT_Byte, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {255, 0, 51, 0, 0, 0}).image,
+                {0.0, 1.0, 0.8, 1.0, 1.0, 1.0});
+}
+
+TEST_F(RasterFileTest, PalettesAreExpanded) {
+  write_raster(folder / "p.tif", {"GTiff", GDT_Byte}, {0, 1, 0, 1, 0, 1}, [](GDALDataset& raster) {
+    GDALColorTable table;
+    const GDALColorEntry red{255, 0, 51, 255}, blue{0, 102, 255, 255};
+    table.SetColorEntry(0, &red);
+    table.SetColorEntry(1, &blue);
+    raster.GetRasterBand(1)->SetColorTable(&table);
+  });
+  const ColorImageFile color = read_color_image(folder / "p.tif");
+  EXPECT_DOUBLE_EQ(color.planes[0].values[0], 1.0);
+  EXPECT_DOUBLE_EQ(color.planes[2].values[0], 0.2);
+  EXPECT_DOUBLE_EQ(color.planes[1].values[1], 0.4);
+}
+
+TEST_F(RasterFileTest, ColoursUnderAlphaAreThoseStored) {
+  const std::vector<std::uint8_t> pixels{51, 102, 204, 255, 51, 102, 204, 128,
+                                         51, 102, 204, 0,   51, 102, 204, 255};
+  const auto with_alpha = [&](std::uint16_t kind) {
+    write_tiff(folder / "a.tif", 4, 4, pixels,
+               [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &kind); });
+    return read_color_image(folder / "a.tif");
+  };
+  const ColorImageFile apart = with_alpha(EXTRASAMPLE_UNASSALPHA);
+  EXPECT_EQ(apart.planes[0].values, std::vector<double>(4, 0.2));
+  ASSERT_EQ(apart.remarks.size(), 1u);
+  EXPECT_TRUE(has(apart.remarks[0], "50.0 %"));
+  // What was multiplied in is divided out, and nothing is left where alpha is 0.
+  const ColorImageFile associated = with_alpha(EXTRASAMPLE_ASSOCALPHA);
+  EXPECT_DOUBLE_EQ(associated.planes[0].values[0], 0.2);
+  EXPECT_DOUBLE_EQ(associated.planes[0].values[1], 0.2 * 255.0 / 128.0);
+  EXPECT_EQ(associated.planes[0].missing, (std::vector<bool>{false, false, true, false}));
+}
+
+TEST_F(RasterFileTest, AHeightMapStatesItsPixelsHeightsAndGaps) {
+  const ImageFile map = read({"GTiff", GDT_Int16}, {-9999, 10, 20, 30, 20, 10}, [](GDALDataset& raster) {
+    place(raster, 2.5, "+proj=eqc +R=1737400 +units=m");
+    GDALRasterBand& band = *raster.GetRasterBand(1);
+    band.SetNoDataValue(-9999);
+    band.SetScale(0.5);
+    band.SetOffset(100.0);
+    band.SetUnitType("km");
+  });
+  ASSERT_TRUE(map.scale.has_value());
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_DOUBLE_EQ(map.scale->pixel_width, 2.5);
+  EXPECT_EQ(map.scale->pixel_source, "");
+  EXPECT_EQ(map.image.missing, (std::vector<bool>{true, false, false, false, false, false}));
+  EXPECT_NEAR(map.image.values[3] - map.image.values[1], 1e4, 1e-9);
+  EXPECT_NEAR(known_mean(map.image), 0.0, 1e-9);
+  EXPECT_TRUE(std::isfinite(map.image.values[0]));
+}
+
+TEST_F(RasterFileTest, DegreesBecomeMetresByTheBodysRadius) {
+  const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+    std::array<double, 6> transform{10.0, 0.01, 0.0, 0.01, 0.0, -0.01};
+    raster.SetGeoTransform(transform.data());
+    OGRSpatialReference moon;
+    moon.SetGeogCS("Moon", "D_Moon", "Moon", 1737400.0, 0.0);
+    raster.SetSpatialRef(&moon);
+  });
+  EXPECT_NEAR(map.scale->pixel_height, 1737400.0 * 0.01 * std::acos(-1.0) / 180.0, 1e-6);
+  EXPECT_NEAR(map.scale->pixel_width, map.scale->pixel_height, 1e-4);
+  EXPECT_EQ(map.scale->pixel_source, "degrees on a body of radius 1737.4 km");
+  EXPECT_EQ(map.scale->height_source, "no unit is stated");
+}
+
+TEST_F(RasterFileTest, AFootIsNoMetre) {
+  const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+    place(raster, 10.0, "+proj=eqc +R=1737400 +units=ft");
+    raster.GetRasterBand(1)->SetUnitType("ft");
+  });
+  EXPECT_NEAR(map.scale->pixel_width, 3.048, 1e-9);
+  EXPECT_NEAR(map.image.values[5] - map.image.values[0], 1.524, 1e-9);
+}
+
+TEST_F(RasterFileTest, PicturesFromAboveHavePixelsAndNoHeights) {
+  const ImageFile picture =
+      read({"GTiff", GDT_Byte}, kSteps, [](GDALDataset& raster) { place(raster, 0.5); });
+  ASSERT_TRUE(picture.scale.has_value());
+  EXPECT_FALSE(picture.scale->heights);
+  EXPECT_DOUBLE_EQ(picture.scale->pixel_width, 0.5);
+  EXPECT_DOUBLE_EQ(picture.image.values[5], 5.0 / 255.0);
+  EXPECT_FALSE(read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+                 place(raster, 0.5);
+                 raster.GetRasterBand(1)->SetUnitType("I/F");
+               }).scale->heights);
+}
+
+// A size of pixels without a place on the ground, which GDAL calls invalid.
+TEST_F(RasterFileTest, APixelScaleByItselfCounts) {
+  TIFF* tiff = TIFFOpen((folder / "s.tif").c_str(), "w");
+  static char name[] = "ModelPixelScale";
+  const TIFFFieldInfo field{33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, name};
+  TIFFMergeFieldInfo(tiff, &field, 1);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  const double scale[] = {3.0, 3.0, 0.0};
+  TIFFSetField(tiff, 33550, 3, scale);
+  float row[] = {-1850.0f, -1851.0f};
+  TIFFWriteScanline(tiff, row, 0);
+  TIFFClose(tiff);
+  const ImageFile map = read_grey_image(folder / "s.tif");
+  ASSERT_TRUE(map.scale.has_value());
+  EXPECT_DOUBLE_EQ(map.scale->pixel_width, 3.0);
+  expect_values(map.image, {0.5, -0.5});
+}
+
+TEST_F(RasterFileTest, TheHeightMapsOfSynthAreReadBack) {
+  std::vector<float> heights{1.0f, 2.0f, 3.0f, std::numeric_limits<float>::quiet_NaN(), 5.0f, 6.0f};
+  write_geotiff(heights, 3, 2, 0.25, "heights", folder / "g.tif");
+  const ImageFile map = read_grey_image(folder / "g.tif");
+  ASSERT_TRUE(map.scale.has_value());
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_DOUBLE_EQ(map.scale->pixel_width, 0.25);
+  EXPECT_EQ(map.scale->pixel_source, "");
+  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+}
+
+TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
+  const ImageFile map = read({"GTiff", GDT_Float32}, {-9999, 10, 11, 12, 11, 10});
+  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  ASSERT_EQ(map.remarks.size(), 1u);
+  EXPECT_TRUE(has(map.remarks[0], "-9999"));
+  // A radius in metres is a height like another.
+  EXPECT_EQ(missing_share(read({"GTiff", GDT_Float64}, {1.7e6, 1.7e6, 1.7e6 + 1, 1.7e6, 1.7e6, 1.7e6}).image),
+            0.0);
+  write_raster(folder / "far.tif", {"GTiff", GDT_Float64}, {1e12, 1, 2, 3, 4, 5});
+  EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata"));
+}
+
+TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
+  const std::vector<double> heights{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  for (const char* format : {"ISIS3", "PDS4", "VICAR", "ENVI", "FITS", "EHdr", "HFA", "AAIGrid"}) {
+    const fs::path file = folder / (std::string(format) + (std::string(format) == "PDS4" ? ".xml" : ".img"));
+    write_raster(file, {format, GDT_Float32, 4, 3}, heights);
+    if (!fs::exists(file)) continue;  // the format is not built in
+    const GreyImage image = read_grey_image(file).image;
+    ASSERT_EQ(image.values.size(), 12u) << format;
+    EXPECT_NEAR(image.values[5] - image.values[0], 5.0, 1e-6) << format;
+    EXPECT_FALSE(fs::exists(file.string() + ".aux.xml") && std::string(format) != "FITS") << format;
+  }
+}
+
+// GDAL keeps the unit of a PDS3 label to itself.
+TEST_F(RasterFileTest, ThePds3LabelHasTheUnit) {
+  std::string file =
+      "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 512\r\nFILE_RECORDS = 2\r\n"
+      "LABEL_RECORDS = 1\r\n^IMAGE = 2\r\nOBJECT = IMAGE\r\n LINES = 2\r\n LINE_SAMPLES = 3\r\n"
+      " SAMPLE_TYPE = MSB_INTEGER\r\n SAMPLE_BITS = 16\r\n UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n"
+      "END_OBJECT = IMAGE\r\nEND\r\n";
+  file.resize(1024, '\0');
+  for (std::size_t i = 0; i < 6; ++i) file[512 + 2 * i + 1] = static_cast<char>(i);
+  const ImageFile map = read_grey_image(folder.write("dem.img", file));
+  ASSERT_TRUE(map.scale.has_value());
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_NEAR(map.image.values[5] - map.image.values[0], 2500.0, 1e-9);
+}
+
+TEST_F(RasterFileTest, JpegOf2000IsRead) {
+  std::vector<double> values;
+  for (int i = 0; i < 64 * 64; ++i) values.push_back(i % 251 * 16);
+  const fs::path file = write_raster(
+      folder / "j.jp2", {"JP2OpenJPEG", GDT_UInt16, 64, 64, 1, {"QUALITY=100", "REVERSIBLE=YES"}}, values);
+  const GreyImage image = read_grey_image(file).image;
+  EXPECT_DOUBLE_EQ(image.values[77], 77 * 16 / 65535.0);
+}
+
+TEST_F(RasterFileTest, WhatNoReaderShouldGuessIsRefused) {
+  write_raster(folder / "complex.tif", {"GTiff", GDT_CFloat32}, kSteps);
+  EXPECT_TRUE(has(error_of(folder / "complex.tif"), "complex"));
+  write_raster(folder / "five.tif", {"GTiff", GDT_Byte, 3, 2, 5}, std::vector<double>(30, 1.0));
+  EXPECT_TRUE(has(error_of(folder / "five.tif"), "5 bands"));
+  write_raster(folder / "two.tif", {"GTiff", GDT_Float32, 3, 2, 2}, std::vector<double>(12, 1.0));
+  EXPECT_TRUE(has(error_of(folder / "two.tif"), "2 bands"));
+  write_raster(folder / "gaps.tif", {"GTiff", GDT_Float32}, {0, 0, 0, 0, 5, 6},
+               [](GDALDataset& raster) { raster.GetRasterBand(1)->SetNoDataValue(0); });
+  EXPECT_TRUE(has(error_of(folder / "gaps.tif"), "67 %"));
+  EXPECT_TRUE(
+      has(error_of(folder.write("list.vrt", "<VRTDataset rasterXSize=\"9\" rasterYSize=\"9\"></VRTDataset>")),
+          "first bytes"));
+}
+
+// The first picture of a raw file is a thumbnail, and the true one is another.
+TEST_F(RasterFileTest, RawFilesOfCamerasAreRefused) {
+  const std::vector<std::uint8_t> thumbnail(64, 7);
+  write_tiff(folder / "a.dng", 8, 1, thumbnail, [](TIFF* tiff) {
+    const std::uint8_t version[] = {1, 4, 0, 0};
+    TIFFSetField(tiff, TIFFTAG_DNGVERSION, version);
+  });
+  EXPECT_TRUE(has(error_of(folder / "a.dng"), "raw file"));
+  write_tiff(folder / "a.nef", 8, 1, thumbnail,
+             [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_REDUCEDIMAGE); });
+  EXPECT_TRUE(has(error_of(folder / "a.nef"), "raw file"));
+  std::string mark("II*\0\x10\0\0\0CR\2\0", 12);
+  mark.resize(72, 'x');
+  EXPECT_TRUE(has(error_of(folder.write("a.cr2", mark)), "raw file"));
+}
+
+TEST_F(RasterFileTest, PagesAreSaid) {
+  TIFF* tiff = TIFFOpen((folder / "pages.tif").c_str(), "w");
+  for (int page = 0; page < 2; ++page) {
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 1);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    std::uint8_t value = 51;
+    TIFFWriteScanline(tiff, &value, 0);
+    TIFFWriteDirectory(tiff);
+  }
+  TIFFClose(tiff);
+  const ImageFile file = read_grey_image(folder / "pages.tif");
+  ASSERT_EQ(file.remarks.size(), 1u);
+  EXPECT_TRUE(has(file.remarks[0], "first of several pages"));
+}
+
+// EXIF counts where row 0 and column 0 of the stored picture stand when it is upright.
+TEST_F(RasterFileTest, EveryOrientationIsHonoured) {
+  const std::vector<std::vector<double>> upright{
+      {10, 20, 30, 40, 50, 60}, {30, 20, 10, 60, 50, 40}, {60, 50, 40, 30, 20, 10}, {40, 50, 60, 10, 20, 30},
+      {10, 40, 20, 50, 30, 60}, {40, 10, 50, 20, 60, 30}, {60, 30, 50, 20, 40, 10}, {30, 60, 20, 50, 10, 40}};
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    write_tiff(folder / "o.tif", 3, 1, {10, 20, 30, 40, 50, 60},
+               [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation); });
+    const GreyImage image = read_grey_image(folder / "o.tif").image;
+    EXPECT_EQ(image.width, orientation > 4 ? 2 : 3);
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_NEAR(image.values[i] * 255.0, upright[static_cast<std::size_t>(orientation - 1)][i], 1e-9)
+          << orientation;
+  }
+}
+
+TEST(MissingGround, IsContinuedSmoothly) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  GreyImage slope{9, 9, {}};
+  for (int i = 0; i < 81; ++i)
+    slope.values.push_back(i % 9 >= 3 && i % 9 < 6 && i / 9 >= 3 && i / 9 < 6 ? nan : i % 9);
+  fill_missing(slope);
+  for (int i = 0; i < 81; ++i) EXPECT_NEAR(slope.values[static_cast<std::size_t>(i)], i % 9, 0.05) << i;
+  EXPECT_NEAR(missing_share(slope), 9.0 / 81.0, 1e-12);
+}
+
+TEST(MissingGround, TheLargestPartHasNoGap) {
+  GreyImage image{20, 12, std::vector<double>(240, 1.0), std::vector<bool>(240, false)};
+  image.missing[5] = true;  // a hole of one pixel is no gap
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 12; x < 16; ++x) image.missing[static_cast<std::size_t>(y * 20 + x)] = true;
+  }
+  const GreyImage part = largest_whole_part(image);
+  EXPECT_EQ(part.width, 12);
+  EXPECT_EQ(part.height, 12);
+  EXPECT_TRUE(part.missing.empty());
+}
+
+}  // namespace
+}  // namespace astrolith
