@@ -19,6 +19,9 @@
 
 namespace astrolith {
 
+// In front of the numbers of MeshFileInfo::origin.
+inline constexpr const char* kOriginLabel = "origin, to be added to all coordinates: ";
+
 struct MeshFile {
   std::filesystem::path path;
   std::string bytes;

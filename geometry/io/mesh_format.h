@@ -27,10 +27,11 @@ struct MeshFormat {
   TriangleMesh (*reader)(const MeshFile&) = nullptr;  // null: meshes are only written so
   // Null: meshes are only read so. All below is about what is written.
   void (*writer)(const TriangleMesh&, const std::filesystem::path&, const MeshFileInfo&) = nullptr;
-  const char* words = "";   // behind the extension in help texts
-  bool tells_unit = false;  // in a comment, or by its nature, as a .glb is in metres
-  bool has_colors = false;  // of vertices
-  bool has_values = false;  // any numbers of vertices; a mesh without faces will do
+  const char* words = "";     // behind the extension in help texts
+  bool tells_unit = false;    // in a comment, or by its nature, as a .glb is in metres
+  bool tells_origin = false;  // so that coordinates may be relative to one
+  bool has_colors = false;    // of vertices
+  bool has_values = false;    // any numbers of vertices; a mesh without faces will do
   bool has_texture_coordinates = false;
   bool streamed = false;  // while the mesh is made; .zst behind the extension compresses it
   // The bytes of the file for each triangle, about, and those that the writer keeps of it.

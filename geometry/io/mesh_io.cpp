@@ -65,11 +65,19 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
   }
 }
 
+// Coordinates relative to an origin that the file states become those of its frame.
+TriangleMesh in_frame(TriangleMesh mesh, const std::filesystem::path& file) {
+  if (const std::optional<Vec3d> origin = stated_origin(file)) {
+    for (Vec3d& p : mesh.vertices) p += *origin;
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = read_content(content);
+  TriangleMesh mesh = in_frame(read_content(content), file);
   if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
   require_valid(content, mesh);
   return mesh;
@@ -77,7 +85,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
 
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = read_content(content);
+  TriangleMesh mesh = in_frame(read_content(content), file);
   if (mesh.triangles.empty() && mesh.normals.empty()) {
     content.fail("", "holds neither faces nor points with unit normals",
                  "give a mesh, or a .ply with x y z nx ny nz");
@@ -89,7 +97,10 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   const MeshFormat& format = written_mesh_format(file);
   require_writable(mesh, file);
-  format.writer(mesh, file, info);
+  if (!info.origin || format.tells_origin) return format.writer(mesh, file, info);
+  TriangleMesh moved = mesh;
+  for (Vec3d& p : moved.vertices) p += *info.origin;
+  format.writer(moved, file, info);
 }
 
 std::vector<std::string> info_lines(const MeshFileInfo& info) {
@@ -101,7 +112,7 @@ std::vector<std::string> info_lines(const MeshFileInfo& info) {
     lines.push_back(label + text);
   };
   add("length unit: ", info.length_unit);
-  if (info.origin) add("origin, to be added to all coordinates: ", point_text(*info.origin));
+  if (info.origin) add(kOriginLabel, point_text(*info.origin));
   add("frame: ", info.frame);
   add("", info.comment);
   for (const std::string& note : info.notes) add("", note);

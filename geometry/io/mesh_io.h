@@ -52,6 +52,10 @@ struct MeshFileInfo {
   bool texture_coordinates = false;
 };
 
+// Reads the origin that a .ply or .obj states. None where it states none, or cannot be read. read_mesh() adds
+// it to all coordinates.
+std::optional<Vec3d> stated_origin(const std::filesystem::path& file);
+
 // Writes .ply (binary little endian, float32; .ply.zst is compressed), .obj (text, exact), .stl (binary,
 // float32) or .glb (glTF 2.0, float32; a node turns +z up into +y up and scales m, km, cm, mm to metres),
 // .tab (PDS plate model, text, exact) or .icq (Gaskell's quadrilaterals, as many as half the triangles; for
@@ -59,7 +63,7 @@ struct MeshFileInfo {
 // are written where the mesh and the format have them, colours of vertices into .ply (sRGB bytes) and .glb
 // (COLOR_0, linear light). Throws InputError for another extension and for a folder that cannot be written.
 // Throws WorkError for a mesh without triangles, with indices out of range, or with coordinates that float32
-// cannot hold.
+// cannot hold. Formats that state no origin get the coordinates of the frame.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
 // What a file says of the unit of its lengths.

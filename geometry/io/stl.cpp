@@ -101,7 +101,9 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   }
   // The text must not start with "solid": readers would take the file for the ascii form.
   std::string header = "Binary STL";
-  for (const std::string& line : info_lines(info)) header += "; " + line;
+  MeshFileInfo short_info = info;
+  short_info.origin.reset();  // its numbers might be cut off
+  for (const std::string& line : info_lines(short_info)) header += "; " + line;
   header.resize(80, ' ');
   OutputFile out(file);
   BufferedOutput buffer(out);

@@ -9,7 +9,7 @@
 namespace astrolith {
 
 // Whether opposite borders continue each other along x, or along y. The bend of a column (or a row) is the
-// sum of its second differences, taken without signs. Borders continue each other if they bend about as much
+// mean of its second differences, taken without signs. Borders continue each other if they bend about as much
 // as at least three separate places inside, or less. A strong stratum or a bright grain therefore does not
 // hide a cut. White noise continues across any cut, which does it no harm.
 double column_bend(const GreyImage& image,

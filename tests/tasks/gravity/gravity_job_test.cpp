@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
 #include "tests/tasks/inputs.h"
 #include "tests/tasks/job_runner.h"
@@ -57,7 +58,8 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
            {"ball.obj --density 2.67",
             "a density of 2.67 kg/m^3 is that of no solid; for 2.67 g/cm^3 give 2670"},
            {"two.ply --density 2000", "two.ply: holds 2 bodies apart from one another, the largest is taken"},
-           {"two.ply --density 2000 --all-parts", "two.ply: holds 2 bodies apart from one another, all are taken"},
+           {"two.ply --density 2000 --all-parts",
+            "two.ply: holds 2 bodies apart from one another, all are taken"},
            {"metres.obj --density 2000",
             "note: metres.obj: a mean radius of 1815 km is above that of any asteroid or comet; is --unit "
             "km"},
@@ -293,8 +295,10 @@ TEST_F(Gravity, DamagedMeshesAreRepaired) {
 TEST_F(Gravity, PartsThatOverlapAreSaidAndUnited) {
   write_mesh(testing::two_spheres(4, 1, 1), folder_ / "lobes.ply", {});
   write_mesh(testing::joined(testing::icosphere(3), testing::icosphere(2, 0.5)), folder_ / "core.ply", {});
-  EXPECT_TRUE(has(succeed("lobes.ply --density 2000"), "1 part reaches into a larger one: rock counts twice"));
-  EXPECT_TRUE(has(succeed("core.ply --density 2000"), "1 part lies in the rock of a larger one: rock counts"));
+  EXPECT_TRUE(
+      has(succeed("lobes.ply --density 2000"), "1 part reaches into a larger one: rock counts twice"));
+  EXPECT_TRUE(
+      has(succeed("core.ply --density 2000"), "1 part lies in the rock of a larger one: rock counts"));
   const double ball = gravity("core.ply --density 2000 --union")["volume_m3"];
   EXPECT_NEAR(ball, 1e9 * volume(testing::icosphere(3)), 1.0);
   const double both = gravity("lobes.ply --density 2000")["volume_m3"];
@@ -307,7 +311,8 @@ TEST_F(Gravity, ARecipeWithAnOriginGivesItsFrameBack) {
   write("far.json", R"({"format_version": 1, "length_unit": "km", "origin": [16.5, 0, -2], "body":
     {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 0.03]]}})");
   write("place.csv", "16.6 0 -2\n");
-  const nlohmann::json figures = gravity("far.json --density 2000 --resolution 32 --points place.csv -o g.csv");
+  const nlohmann::json figures =
+      gravity("far.json --density 2000 --resolution 32 --points place.csv -o g.csv");
   EXPECT_NEAR(figures["center_of_mass_m"][0], 16500.0, 0.01);
   EXPECT_NEAR(figures["center_of_mass_m"][2], -2000.0, 0.01);
   const double mass = figures["mass_kg"];
