@@ -199,7 +199,7 @@ double stated_side(const StatedScale& scale, const std::string& name) {
 std::string in_brackets(const std::string& words) { return words.empty() ? "" : " (" + words + ")"; }
 
 // What the file states of its scale is taken where no option gives it, and said.
-void take_stated_scale(const Job& job, const ColorImageFile& photo, PhotoFitArguments& o) {
+void take_stated_scale(Job& job, const ColorImageFile& photo, PhotoFitArguments& o) {
   const double missing = missing_share(photo.planes.front());
   o.has_gaps = missing > 0.0;
   std::vector<std::string> words;
@@ -217,10 +217,13 @@ void take_stated_scale(const Job& job, const ColorImageFile& photo, PhotoFitArgu
   if (photo.scale && photo.scale->heights) {
     o.heights_in_metres = true;
     const double rms = std::sqrt(known_variance(photo.planes.front()));
+    job.summary["image"]["height_rms"] = rms;
     words.push_back(fmt::format(
         "heights in metres{} of rms {:.4g} m{}", in_brackets(photo.scale->height_source), rms,
         o.height_rms >= 0.0 ? fmt::format(", where --height-rms {:g} counts", o.height_rms) : ""));
   }
+  job.summary["image"]["missing"] = missing;
+  if (o.mm_per_px > 0.0) job.summary["image"]["metres_per_pixel"] = 1e-3 * o.mm_per_px;
   if (missing > 0.0) words.push_back(fmt::format("{:.2g} % of the pixels are missing", 100.0 * missing));
   if (!words.empty()) job.say(fmt::format("{}: {}", o.image, fmt::join(words, "; ")));
   if (o.heights_in_metres && !(o.mm_per_px > 0.0) && !(o.height_rms >= 0.0))
