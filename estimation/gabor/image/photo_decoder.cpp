@@ -85,7 +85,7 @@ void read_photo(const std::filesystem::path& file, const TakeRow& take) {
 double share_not_opaque(const std::filesystem::path& file, const PhotoHeader& header) {
   if (!header.has_alpha) return 0.0;
   const cv::Mat mat = read_with_opencv(file.string(), cv::IMREAD_UNCHANGED);
-  if (mat.channels() != 4 || (mat.depth() != CV_8U && mat.depth() != CV_16U)) return 0.0;
+  if (mat.empty() || mat.channels() != 4 || (mat.depth() != CV_8U && mat.depth() != CV_16U)) return 0.0;
   cv::Mat alpha;
   cv::extractChannel(mat, alpha, 3);
   const double opaque = mat.depth() == CV_8U ? 255.0 : 65535.0;

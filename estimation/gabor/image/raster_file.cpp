@@ -231,32 +231,107 @@ void RasterFile::find_bands() {
   if (!b.as_stated) b.factor = 1.0 / full_scale(first);
 }
 
-// Only a grid in degrees needs a radius to become one in metres.
+namespace {
+
+// The steps of a pixel along a row and along a column, in metres on the ground.
+struct Step {
+  double east = 0.0, north = 0.0;
+  double length() const { return std::sqrt(east * east + north * north); }
+};
+struct GroundSteps {
+  Step column, row;
+  std::string source;  // StatedScale::pixel_source
+};
+
+using GeoTransform = std::array<double, 6>;
+constexpr GeoTransform kNoTransform{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+
+// The metres of a degree, or of what the frame counts, along a meridian and along the parallel of a latitude.
+Step metres_of_angle(const OGRSpatialReference& frame, double latitude) {
+  const double angle = frame.GetAngularUnits(), metres = frame.GetSemiMajor() * angle;
+  constexpr double kPole = 1.6;
+  return {std::abs(latitude * angle) < kPole ? metres * portable::cos(latitude * angle) : 0.0, metres};
+}
+
+std::string degrees_words(const OGRSpatialReference& frame) {
+  return fmt::format("degrees on a body of radius {:.6g} km", frame.GetSemiMajor() / 1e3);
+}
+
+// The coordinates of the middle, and of its next pixels along the row and along the column.
+struct MiddlePixels {
+  std::array<double, 3> x, y;
+};
+MiddlePixels middle_of(GDALDataset& raster, const GeoTransform& t) {
+  const double column = 0.5 * raster.GetRasterXSize(), row = 0.5 * raster.GetRasterYSize();
+  const double x = t[0] + column * t[1] + row * t[2], y = t[3] + column * t[4] + row * t[5];
+  return {{x, x + t[1], x + t[2]}, {y, y + t[4], y + t[5]}};
+}
+
+// To six digits, which the libraries of all machines agree on.
+double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+// The steps where a projection stretches the ground: its plane has other pixels than the body. None where it
+// does so by less than 2 %, or where the frame has no globe.
+std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddlePixels middle, double plain) {
+  constexpr double kStretch = 0.02;
+  OGRSpatialReference plane(frame);
+  const std::unique_ptr<OGRSpatialReference> globe(frame.CloneGeogCS());
+  if (globe == nullptr) return {};
+  plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  globe->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> way(
+      OGRCreateCoordinateTransformation(&plane, globe.get()));
+  if (way == nullptr || way->Transform(3, middle.x.data(), middle.y.data()) == 0) return {};
+  const Step metres = metres_of_angle(*globe, middle.y[0]);
+  const auto step = [&](std::size_t k) {
+    return Step{rounded(metres.east * (middle.x[k] - middle.x[0])),
+                rounded(metres.north * (middle.y[k] - middle.y[0]))};
+  };
+  GroundSteps steps{step(1), step(2), ""};
+  const double width = steps.column.length(), height = steps.row.length();
+  const auto differs = [&](double side) { return !(std::abs(side - plain) <= kStretch * plain); };
+  if (!(width < 4.0 * plain && height < 4.0 * plain) || (!differs(width) && !differs(height))) return {};
+  steps.source = fmt::format("on the ground, where the projection has {:.6g} m", plain);
+  return steps;
+}
+
+// None where the file states no size of pixels.
+std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
+  GeoTransform t = kNoTransform;
+  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
+  if (raster.GetGeoTransform(t.data()) != CE_None && t == kNoTransform) return {};
+  const OGRSpatialReference* frame = raster.GetSpatialRef();
+  const MiddlePixels middle = middle_of(raster, t);
+  Step unit{1.0, 1.0};
+  GroundSteps steps;
+  if (frame == nullptr) {
+    const bool like_degrees = t[0] != 0.0 && std::abs(middle.x[0]) <= 360.0 &&
+                              std::abs(middle.y[0]) <= 90.0 && std::abs(t[1]) < 0.1;
+    steps.source =
+        like_degrees ? "no unit is stated; if they are degrees, give --mm-per-px" : "no unit is stated";
+  } else if (frame->IsGeographic() != 0) {
+    unit = metres_of_angle(*frame, middle.y[0]);
+    steps.source = degrees_words(*frame);
+  } else {
+    unit = {frame->GetLinearUnits(), frame->GetLinearUnits()};
+  }
+  steps.column = {unit.east * t[1], unit.north * t[4]};
+  steps.row = {unit.east * t[2], unit.north * t[5]};
+  if (frame == nullptr || frame->IsProjected() == 0) return steps;
+  return unprojected(*frame, middle, steps.column.length()).value_or(steps);
+}
+
+}  // namespace
+
 void RasterFile::find_scale() {
   StatedScale scale;
-  std::array<double, 6> t{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
-  const bool placed = dataset_->GetGeoTransform(t.data()) == CE_None;
-  const bool stated = placed || t != std::array<double, 6>{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  if (stated) {
-    double across = 1.0, down = 1.0;
-    const OGRSpatialReference* frame = dataset_->GetSpatialRef();
-    if (frame == nullptr) {
-      scale.pixel_source = "no unit is stated";
-    } else if (frame->IsGeographic() != 0) {
-      const double radius = frame->GetSemiMajor(), angle = frame->GetAngularUnits();
-      const double latitude = (t[3] + 0.5 * width() * t[4] + 0.5 * height() * t[5]) * angle;
-      down = radius * angle;
-      across = std::abs(latitude) < 1.6 ? down * portable::cos(latitude) : 0.0;
-      scale.pixel_source = fmt::format("degrees on a body of radius {:.6g} km", radius / 1e3);
-    } else {
-      across = down = frame->GetLinearUnits();
-    }
-    const double ax = across * t[1], ay = down * t[4], bx = across * t[2], by = down * t[5];
-    scale.pixel_width = std::sqrt(ax * ax + ay * ay);
-    scale.pixel_height = std::sqrt(bx * bx + by * by);
-    scale.sheared = std::abs(ax * bx + ay * by) > 0.01 * scale.pixel_width * scale.pixel_height;
-    if (!(scale.pixel_width > 0.0 && scale.pixel_height > 0.0)) scale.pixel_width = scale.pixel_height = 0.0;
+  const std::optional<GroundSteps> steps = ground_steps(*dataset_);
+  if (steps && steps->column.length() > 0.0 && steps->row.length() > 0.0) {
+    scale.pixel_width = steps->column.length();
+    scale.pixel_height = steps->row.length();
+    const double shear = steps->column.east * steps->row.east + steps->column.north * steps->row.north;
+    scale.sheared = std::abs(shear) > 0.01 * scale.pixel_width * scale.pixel_height;
+    scale.pixel_source = steps->source;
   }
   Bands& b = *bands_;
   const double metres = metres_of_name(b.unit);

@@ -128,6 +128,13 @@ TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
             std::string::npos);
 }
 
+TEST_F(ImageReaderTest, ADamagedPictureWithAlphaIsAnError) {
+  std::string bytes(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x10\0\0\0\x10\x08\x06\0\0\0\x1f\xf3\xff\x61\0\0\0\x1dIDAT", 41);
+  bytes.resize(80, '\x9c');
+  EXPECT_NE(error_of(folder.write("alpha.png", bytes)).find("cannot be decoded"), std::string::npos);
+}
+
 // libpng prints about each of these files. What others print meanwhile is neither lost nor held back.
 TEST_F(ImageReaderTest, DamagedFilesAreSilentInManyThreads) {
   write_png8_grey(std::vector<std::uint8_t>(64, 7), 8, 8, folder / "whole.png");

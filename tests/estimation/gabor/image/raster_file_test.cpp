@@ -155,6 +155,21 @@ TEST_F(RasterFileTest, DegreesBecomeMetresByTheBodysRadius) {
   EXPECT_EQ(map.scale->height_source, "no unit is stated");
 }
 
+// Mercator's pixels at 60 degrees are twice as large as the ground below them.
+TEST_F(RasterFileTest, AProjectionMayStretchTheGround) {
+  const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+    const double north = 1737400.0 * std::log(std::tan(75.0 * std::acos(-1.0) / 180.0));
+    std::array<double, 6> transform{-15.0, 10.0, 0.0, north + 10.0, 0.0, -10.0};
+    raster.SetGeoTransform(transform.data());
+    OGRSpatialReference reference;
+    reference.SetFromUserInput("+proj=merc +R=1737400 +units=m");
+    raster.SetSpatialRef(&reference);
+  });
+  EXPECT_NEAR(map.scale->pixel_width, 5.0, 1e-4);
+  EXPECT_NEAR(map.scale->pixel_height, 5.0, 1e-3);
+  EXPECT_EQ(map.scale->pixel_source, "on the ground, where the projection has 10 m");
+}
+
 TEST_F(RasterFileTest, AFootIsNoMetre) {
   const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
     place(raster, 10.0, "+proj=eqc +R=1737400 +units=ft");
