@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <array>
@@ -14,11 +13,11 @@
 #include <regex>
 #include <utility>
 
+#include "estimation/gabor/image/ground_steps_internal.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/raster_file_internal.h"
 #include "estimation/gabor/image/tiff_tags_internal.h"
 #include "numerics/errors.h"
-#include "numerics/portable_angles.h"
 
 namespace astrolith {
 namespace {
@@ -230,98 +229,6 @@ void RasterFile::find_bands() {
       is_signed_or_float(first) || b.signed_bytes || b.factor != 1.0 || b.offset != 0.0 || !b.unit.empty();
   if (!b.as_stated) b.factor = 1.0 / full_scale(first);
 }
-
-namespace {
-
-// The steps of a pixel along a row and along a column, in metres on the ground.
-struct Step {
-  double east = 0.0, north = 0.0;
-  double length() const { return std::sqrt(east * east + north * north); }
-};
-struct GroundSteps {
-  Step column, row;
-  std::string source;  // StatedScale::pixel_source
-};
-
-using GeoTransform = std::array<double, 6>;
-constexpr GeoTransform kNoTransform{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-
-// The metres of a degree, or of what the frame counts, along a meridian and along the parallel of a latitude.
-Step metres_of_angle(const OGRSpatialReference& frame, double latitude) {
-  const double angle = frame.GetAngularUnits(), metres = frame.GetSemiMajor() * angle;
-  constexpr double kPole = 1.6;
-  return {std::abs(latitude * angle) < kPole ? metres * portable::cos(latitude * angle) : 0.0, metres};
-}
-
-std::string degrees_words(const OGRSpatialReference& frame) {
-  return fmt::format("degrees on a body of radius {:.6g} km", frame.GetSemiMajor() / 1e3);
-}
-
-// The coordinates of the middle, and of its next pixels along the row and along the column.
-struct MiddlePixels {
-  std::array<double, 3> x, y;
-};
-MiddlePixels middle_of(GDALDataset& raster, const GeoTransform& t) {
-  const double column = 0.5 * raster.GetRasterXSize(), row = 0.5 * raster.GetRasterYSize();
-  const double x = t[0] + column * t[1] + row * t[2], y = t[3] + column * t[4] + row * t[5];
-  return {{x, x + t[1], x + t[2]}, {y, y + t[4], y + t[5]}};
-}
-
-// To six digits, which the libraries of all machines agree on.
-double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
-
-// The steps where a projection stretches the ground: its plane has other pixels than the body. None where it
-// does so by less than 2 %, or where the frame has no globe.
-std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddlePixels middle, double plain) {
-  constexpr double kStretch = 0.02;
-  OGRSpatialReference plane(frame);
-  const std::unique_ptr<OGRSpatialReference> globe(frame.CloneGeogCS());
-  if (globe == nullptr) return {};
-  plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  globe->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  const std::unique_ptr<OGRCoordinateTransformation> way(
-      OGRCreateCoordinateTransformation(&plane, globe.get()));
-  if (way == nullptr || way->Transform(3, middle.x.data(), middle.y.data()) == 0) return {};
-  const Step metres = metres_of_angle(*globe, middle.y[0]);
-  const auto step = [&](std::size_t k) {
-    return Step{rounded(metres.east * (middle.x[k] - middle.x[0])),
-                rounded(metres.north * (middle.y[k] - middle.y[0]))};
-  };
-  GroundSteps steps{step(1), step(2), ""};
-  const double width = steps.column.length(), height = steps.row.length();
-  const auto differs = [&](double side) { return !(std::abs(side - plain) <= kStretch * plain); };
-  if (!(width < 4.0 * plain && height < 4.0 * plain) || (!differs(width) && !differs(height))) return {};
-  steps.source = fmt::format("on the ground, where the projection has {:.6g} m", plain);
-  return steps;
-}
-
-// None where the file states no size of pixels.
-std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
-  GeoTransform t = kNoTransform;
-  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
-  if (raster.GetGeoTransform(t.data()) != CE_None && t == kNoTransform) return {};
-  const OGRSpatialReference* frame = raster.GetSpatialRef();
-  const MiddlePixels middle = middle_of(raster, t);
-  Step unit{1.0, 1.0};
-  GroundSteps steps;
-  if (frame == nullptr) {
-    const bool like_degrees = t[0] != 0.0 && std::abs(middle.x[0]) <= 360.0 &&
-                              std::abs(middle.y[0]) <= 90.0 && std::abs(t[1]) < 0.1;
-    steps.source =
-        like_degrees ? "no unit is stated; if they are degrees, give --mm-per-px" : "no unit is stated";
-  } else if (frame->IsGeographic() != 0) {
-    unit = metres_of_angle(*frame, middle.y[0]);
-    steps.source = degrees_words(*frame);
-  } else {
-    unit = {frame->GetLinearUnits(), frame->GetLinearUnits()};
-  }
-  steps.column = {unit.east * t[1], unit.north * t[4]};
-  steps.row = {unit.east * t[2], unit.north * t[5]};
-  if (frame == nullptr || frame->IsProjected() == 0) return steps;
-  return unprojected(*frame, middle, steps.column.length()).value_or(steps);
-}
-
-}  // namespace
 
 void RasterFile::find_scale() {
   StatedScale scale;
