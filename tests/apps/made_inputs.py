@@ -24,6 +24,13 @@ def write_ball(file, length=1.4, rings=8, around=12):
     file.write_text("\n".join(lines) + "\n")
 
 
+def write_heights(file, side=48):
+    """An Arc ASCII grid of `side` x `side` heights in metres, 2 m apart."""
+    height = lambda x, y: 30 * math.sin(0.9 * x + 0.4 * y) + 20 * math.sin(0.7 * y - 0.5 * x)
+    rows = "\n".join(" ".join(f"{height(x, y):.3f}" for x in range(side)) for y in range(side))
+    file.write_text(f"ncols {side}\nnrows {side}\nxllcorner 0\nyllcorner 0\ncellsize 2\n{rows}\n")
+
+
 def write_photo(file, channels, side=64):
     """A PNG of `side` x `side` pixels of waves with a little noise."""
     state, rows = 1, b""

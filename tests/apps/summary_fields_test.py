@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from made_inputs import write_ball, write_photo
+from made_inputs import write_ball, write_heights, write_photo
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LAYERS = """[{"type": "craters", "craters": [{"direction": [0, 0, 1], "diameter": 0.4}]},
@@ -55,6 +55,7 @@ def runs(folder):
     grey, color = folder / "grey.png", folder / "color.png"
     write_photo(grey, 1)
     write_photo(color, 3)
+    write_heights(folder / "heights.asc")
     for name, length in (("one", 1.2), ("two", 2.0)):
         (folder / name).mkdir()
         for k in range(3):
@@ -83,6 +84,7 @@ def runs(folder):
     yield ["synth", family, *members, "--predict"]
     yield ["fit_gabor", grey, "-o", folder / "grey.json", "--model", "auto"]
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
+    yield ["fit_gabor", folder / "heights.asc", "-o", folder / "ground.json", "--model", "phase"]
     heights = ["--texture", "64x64", "--texture-of", "height", "--bits"]
     for bits in ("8", "16"):
         yield ["synth", folder / "color.json", "-o", folder / "heights.png", *heights, bits]
