@@ -17,7 +17,7 @@ scripts/build.sh fuzz -DASTROLITH_CUDA=OFF fuzzers
 # seeds_of READER: the folders of its first files
 seeds_of() {
   case $1 in
-    mesh) echo tests/fuzz/seeds/{obj,ply,stl_ascii,stl_binary,off,plate,icq,bmf,zst} ;;
+    mesh) echo tests/fuzz/seeds/{obj,ply,stl_ascii,stl_binary,off,plate,icq,bmf,grid_table,zst} ;;
     recipe) echo synthesis/examples ;;
     *) echo "tests/fuzz/seeds/$1" ;;
   esac

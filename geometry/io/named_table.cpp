@@ -29,6 +29,10 @@ std::string short_unit(std::string_view word) {
                                                                              {"degree", "deg"},
                                                                              {"degrees", "deg"},
                                                                              {"\xc2\xb0", "deg"},
+                                                                             {"ft", "ft"},
+                                                                             {"feet", "ft"},
+                                                                             {"mi", "mi"},
+                                                                             {"au", "au"},
                                                                              {"rad", "rad"},
                                                                              {"radian", "rad"},
                                                                              {"radians", "rad"}};

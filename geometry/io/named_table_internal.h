@@ -23,7 +23,8 @@ struct TableLayout {
   std::string words;                            // the columns that are taken and those left out
 };
 
-// The short form of a unit of lengths or angles in lower case, "km" for "kilometers"; empty for other words.
+// The short form of a unit of lengths or angles in lower case, "km" for "kilometers"; empty for other
+// words. Not all have a known length: numerics/length_unit.h.
 std::string short_unit(std::string_view word);
 
 // The layout that a line of names describes: x_km, x[m] or "x (km)"; lat or latitude, lon or west_longitude,

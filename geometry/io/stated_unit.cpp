@@ -10,7 +10,6 @@
 #include "geometry/io/named_table_internal.h"
 #include "geometry/io/pds_label_internal.h"
 #include "numerics/files/zstd_stream.h"
-#include "numerics/length_unit.h"
 
 namespace astrolith {
 namespace {
@@ -45,7 +44,12 @@ std::string_view comment_of(std::string_view line) {
   return {};
 }
 
-// The known unit of lengths that words such as "Units: meters", "unit = km" or "all lengths in km" state.
+// Whether a short form is of lengths; that of "ft" has no known length, and is stated all the same.
+bool is_of_lengths(std::string_view unit) {
+  return unit.find(' ') == unit.npos && !unit.empty() && unit != "deg" && unit != "rad";
+}
+
+// The unit of lengths that words such as "Units: meters", "unit = km" or "all lengths in km" state.
 std::string unit_in_words(std::string_view comment) {
   const std::string lower = lower_case(comment);
   for (const std::string_view mark :
@@ -56,7 +60,7 @@ std::string unit_in_words(std::string_view comment) {
     if (at == lower.npos || (at > 0 && is_letter(lower[at - 1]))) continue;
     std::string_view rest = std::string_view(lower).substr(at + mark.size());
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t(['\""), rest.size()));
-    if (const std::string unit = short_unit(first_letters(rest)); has_known_length(unit)) return unit;
+    if (std::string unit = short_unit(first_letters(rest)); is_of_lengths(unit)) return unit;
   }
   return {};
 }
@@ -71,7 +75,7 @@ std::string unit_of_line(std::string_view line) {
   }
   if (std::string unit = unit_in_words(comment); !unit.empty()) return unit;
   const std::optional<TableLayout> columns = named_layout(comment.empty() ? line : comment);
-  return columns && has_known_length(columns->unit) ? columns->unit : std::string();
+  return columns && is_of_lengths(columns->unit) ? columns->unit : std::string();
 }
 
 std::optional<Vec3d> point_in(std::string_view text) {

@@ -172,6 +172,7 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
                                    {"# Vertices are in metres, body-fixed\n", "m"},
                                    {"# length unit: km, body-fixed\n", "km"},
                                    {"lat,lon,radius_km\n", "km"},
+                                   {"# UNITS = feet\n", "ft"},
                                    {"# x, y, z (m)\n", "m"}})
     EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
 }

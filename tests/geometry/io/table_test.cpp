@@ -60,6 +60,7 @@ TEST_F(Tables, OtherColumnsAreRefused) {
   expect_refused("lat,lon,height\n1,2,3\n", "names no x, y, z and no latitude");
   expect_refused("Crater A,1,2,3\n", "names no x, y, z");
   expect_refused("x (ft),y (ft),z (ft)\n1,2,3\n", "the columns state lengths in 'ft'; convert them");
+  expect_refused("x_ft y_ft z_ft\n1 2 3\n", "the columns state lengths in 'ft'");
   expect_refused("x_m,y_m,z_km\n1,2,3\n", "'several units'");
   expect_refused("lat,lon,r\n91,2,3\n", "beyond a pole");
   expect_refused("1,5;2,5;3,5\n", "the number '1,5' has a decimal comma");
