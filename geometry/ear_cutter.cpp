@@ -1,9 +1,9 @@
 #include "geometry/ear_cutter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
+#include <numeric>
+#include <utility>
 
 namespace astrolith {
 namespace {
@@ -114,24 +114,30 @@ bool fan_covers_polygon(std::span<const Triangle> fan, const std::vector<Vec3d>&
 void cut_ears(std::span<Triangle> fan, const std::vector<Vec3d>& vertices) {
   const std::vector<std::uint32_t> corners = corners_of(fan);
   ShrinkingPolygon polygon = in_plane(corners, vertices, newell_normal(fan, vertices));
-  std::deque<std::uint32_t> candidates;
-  for (std::uint32_t i = 0; i < corners.size(); ++i) candidates.push_back(i);
   auto out = fan.begin();
   const auto cut = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     *out++ = {corners[a], corners[b], corners[c]};
     polygon.remove(b);
   };
-  // An ear that is cut can make ears of its two neighbours only.
+  // An ear that is cut can make ears of its two neighbours only. They wait for the next round, so that
+  // triangles do not become slivers around one corner.
+  std::vector<std::uint32_t> candidates(corners.size()), next_candidates;
+  std::iota(candidates.begin(), candidates.end(), 0u);
+  std::vector<std::size_t> last_round(corners.size(), 0);
   std::uint32_t kept = 0;
-  while (!candidates.empty() && polygon.corners_left() > 2) {
-    const std::uint32_t i = candidates.front();
-    candidates.pop_front();
-    if (!polygon.has(i) || !polygon.is_ear(i)) continue;
-    const std::uint32_t before = polygon.previous(i), after = polygon.next(i);
-    cut(before, i, after);
-    candidates.push_back(before);
-    candidates.push_back(after);
-    kept = before;
+  for (std::size_t round = 1; !candidates.empty() && polygon.corners_left() > 2; ++round) {
+    for (const std::uint32_t i : candidates) {
+      if (polygon.corners_left() <= 2) break;
+      if (!polygon.has(i) || last_round[i] == round || !polygon.is_ear(i)) continue;
+      const std::uint32_t before = polygon.previous(i), after = polygon.next(i);
+      cut(before, i, after);
+      for (const std::uint32_t neighbour : {before, after}) {
+        if (std::exchange(last_round[neighbour], round) != round) next_candidates.push_back(neighbour);
+      }
+      kept = before;
+    }
+    candidates.swap(next_candidates);
+    next_candidates.clear();
   }
   while (polygon.corners_left() > 2) {
     const std::uint32_t i = polygon.next(kept);

@@ -69,12 +69,12 @@ void read_plates(TextScanner& scan, std::size_t count, const MeshFile& file, Tri
     if (i == 1) counted = counts_corners(scan);
     if (counted) {
       read_counted_plate(scan, mesh.vertices.size(), corners);
-    } else {
-      start_row(scan, i, "plate", numbered);
-      corners.assign(3, 0);
-      for (std::uint32_t& corner : corners) corner = vertex_index(scan, mesh.vertices.size());
+      fans.append(corners, mesh.triangles);
+      continue;
     }
-    fans.append(corners, mesh.triangles);
+    start_row(scan, i, "plate", numbered);
+    Triangle& t = mesh.triangles.emplace_back();
+    for (std::uint32_t& corner : t) corner = vertex_index(scan, mesh.vertices.size());
   }
   fans.cut_concave(file, mesh);
 }
