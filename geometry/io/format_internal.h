@@ -67,6 +67,10 @@ class PolygonFans {
 // one format and the content is clearly another, and when neither tells the format.
 TriangleMesh read_content(const MeshFile& file);
 
+// Throws InputError for a file that begins as one of the kinds that are no mesh and no table: pictures,
+// archives, kernels, scenes of other programs. `remedy` is for those that need no other.
+void refuse_other_kinds(const MeshFile& file, const std::string& remedy);
+
 // Readers may leave indices out of range and coordinates that are not finite; read_mesh checks both.
 TriangleMesh read_obj(const MeshFile& file);
 TriangleMesh read_ply(const MeshFile& file);

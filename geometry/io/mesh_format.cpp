@@ -29,7 +29,7 @@ constexpr OtherFile kOtherFiles[] = {
     {"\x89PNG", "a PNG picture"},
     {"\xff\xd8\xff", "a JPEG picture"},
     {"glTF", "a glTF file", kExport},
-    {"PK\x03\x04", "a zip archive", kUnpack},
+    {"PK\x03\x04", "a zip archive or a document of an office", "unpack it, or save its table as .csv"},
     {"\x1f\x8b", "a gzip archive", kUnpack},
     {"BZh", "a bzip2 archive", kUnpack},
     {"\xfd\x37zXZ", "an xz archive", kUnpack},
@@ -236,14 +236,19 @@ const OtherFile* other_file(const MeshFile& file) {
 }
 
 [[noreturn]] void fail_unknown(const MeshFile& file) {
-  const OtherFile* const other = other_file(file);
-  if (other == nullptr) file.fail("byte 0", "neither name nor content tells a mesh format", remedy());
-  if (file.bytes.find("3D/3dmodel.model") != file.bytes.npos) file.fail("", "is a 3MF scene", kExport);
-  file.fail("byte 0", std::string("the content is ") + other->name,
-            other->remedy == nullptr ? remedy() : other->remedy);
+  refuse_other_kinds(file, remedy());
+  file.fail("byte 0", "neither name nor content tells a mesh format", remedy());
 }
 
 }  // namespace
+
+void refuse_other_kinds(const MeshFile& file, const std::string& remedy) {
+  const OtherFile* const other = other_file(file);
+  if (other == nullptr) return;
+  if (file.bytes.find("3D/3dmodel.model") != file.bytes.npos) file.fail("", "is a 3MF scene", kExport);
+  file.fail("byte 0", std::string("the content is ") + other->name,
+            other->remedy == nullptr ? remedy : other->remedy);
+}
 
 TriangleMesh read_content(const MeshFile& file) {
   const std::string extension = mesh_extension(file.path);

@@ -55,6 +55,7 @@ Vec3d place_in(const NamedTable& table, const TableLayout& layout) {
 
 PointTable read_point_table(const std::filesystem::path& file, std::string_view unit) {
   const MeshFile content = load_mesh_file(file);
+  refuse_other_kinds(content, "give lines of x, y and z");
   NamedTable table(content);
   const TableLayout layout = layout_of(table, content);
   const double scale = scale_to(layout, unit, table);

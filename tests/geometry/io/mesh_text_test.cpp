@@ -145,7 +145,8 @@ TEST_F(MeshText, DecimalCommasAreNamed) {
 TEST_F(MeshText, OtherFilesAreNamedWithARemedy) {
   expect_refused("a.obj", "PK\x03\x04.......3D/3dmodel.model",
                  "is a 3MF scene; open it in its program, and export");
-  expect_refused("a.obj", "PK\x03\x04...............", "a zip archive; unpack it first");
+  expect_refused("a.obj", "PK\x03\x04...............",
+                 "a zip archive or a document of an office; unpack it, or save its table as .csv");
   expect_refused("a.step", "ISO-10303-21;\nHEADER;\n", "a STEP file; export it as triangles");
   expect_refused("a.fbx", "Kaydara FBX Binary  ", "an FBX scene; open it in its program");
   expect_refused("a.blend", "BLENDER-v300", "a scene of Blender");

@@ -65,6 +65,9 @@ TEST_F(Tables, OtherColumnsAreRefused) {
   expect_refused("lat,lon,r\n91,2,3\n", "beyond a pole");
   expect_refused("1,5;2,5;3,5\n", "the number '1,5' has a decimal comma");
   expect_refused("x y z\n1,5 2,5 3,5\n", "line 2: the number '1,5' has a decimal comma");
+  expect_refused("PK\x03\x04......", "save its table as .csv", "p.xlsx");
+  expect_refused("\x93NUMPY", "the content is a NumPy array", "p.npy");
+  expect_refused("{\"x\": 1}", "the content is JSON; give lines of x, y and z", "p.json");
   expect_refused("x,y,z\n1,2,nan\n", "line 2: z is 'nan'");
 }
 
