@@ -49,9 +49,14 @@ constexpr std::string_view kBlanks = " \t\r\v\f", kComments = "#%!";
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == text.npos) return {};
-  text = text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-  const bool in_quotes = text.size() > 1 && text.front() == '"' && text.back() == '"';
-  return in_quotes ? trimmed(text.substr(1, text.size() - 2)) : text;
+  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+}
+
+// A field without blanks and quotes around it.
+std::string_view unquoted(std::string_view field) {
+  field = trimmed(field);
+  const bool in_quotes = field.size() > 1 && field.front() == '"' && field.back() == '"';
+  return in_quotes ? trimmed(field.substr(1, field.size() - 2)) : field;
 }
 
 // The fields of a line, without those that are empty at its end.
@@ -64,7 +69,7 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields) 
   while (!line.empty()) {
     const std::size_t end =
         std::min(by_blanks ? line.find_first_of(kBlanks) : line.find(*separator), line.size());
-    const std::string_view field = trimmed(line.substr(0, end));
+    const std::string_view field = unquoted(line.substr(0, end));
     if (!by_blanks || !field.empty()) fields.push_back(field);
     line.remove_prefix(std::min(end + 1, line.size()));
   }

@@ -47,6 +47,8 @@ TEST_F(Tables, PointsByTheNamesOfTheirColumns) {
   expect_points("lat_rad lon_rad r\n0 0 3\n0 1.5707963267948966 4\n");
   expect_points("i pos_x pos_y pos_z\n1 3 0 0\n2 0 4 0\n");
   expect_points("x,y,z,potential_J_kg,acceleration_x_m_s2\n3,0,0,-1,2\n0,4,0,-1,2\n");
+  expect_points("\"x\",\"y\",\"z\"\n\"3\",\"0\",\"0\"\n0,4,0\n");
+  expect_points("\"Points:0\",\"Points:1\",\"Points:2\",\"id\"\n3,0,0,1\n0,4,0,2\n");
   EXPECT_EQ(points("id,x_km,y_km,z_km\n1,3,0,0\n", "m").words,
             "columns 'x_km', 'y_km', 'z_km' are taken as x, y, z in km; left out: 'id'");
   EXPECT_EQ(points("3 0 0 255 0 0\n", "", "cloud.xyz").points.size(), 1u);
