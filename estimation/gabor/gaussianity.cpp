@@ -299,9 +299,9 @@ std::string reasons(const Gaussianity& g, const Limits& limits) {
 std::string sentence_for(const Gaussianity& g) {
   switch (g.likeness) {
     case Likeness::kGaussian:
-      return "The photo is a Gaussian texture as far as can be told: the noise will look like it.";
+      return "The photo is a Gaussian texture as far as can be told: noise of its spectrum looks like it.";
     case Likeness::kClose:
-      return "The photo is close to a Gaussian texture: the noise will look much like it.";
+      return "The photo is close to a Gaussian texture: noise of its spectrum looks much like it.";
     case Likeness::kRoughly:
       return "The photo is roughly a Gaussian texture:" + reasons(g, kClose) +
              ". The noise keeps its spectrum and will look softer and more even.";
