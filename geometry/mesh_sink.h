@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 
@@ -30,18 +31,24 @@ class MeshDiscard : public MeshSink {
   void add_triangles(std::span<const Triangle>) override {}
 };
 
-// Passes vertices and triangles on to several sinks.
+// Passes vertices and triangles on to several sinks, which work side by side: they share nothing.
 class SinkList : public MeshSink {
  public:
   void add(MeshSink& sink) { sinks_.push_back(&sink); }
   void add_vertices(std::span<const MeshVertex> vertices) override {
-    for (MeshSink* sink : sinks_) sink->add_vertices(vertices);
+    for_each([&](MeshSink& sink) { sink.add_vertices(vertices); });
   }
   void add_triangles(std::span<const Triangle> triangles) override {
-    for (MeshSink* sink : sinks_) sink->add_triangles(triangles);
+    for_each([&](MeshSink& sink) { sink.add_triangles(triangles); });
   }
 
  private:
+  template <typename Give>
+  void for_each(const Give& give) {
+    parallel_for(0, static_cast<std::int64_t>(sinks_.size()),
+                 [&](std::int64_t i) { give(*sinks_[static_cast<std::size_t>(i)]); });
+  }
+
   std::vector<MeshSink*> sinks_;
 };
 

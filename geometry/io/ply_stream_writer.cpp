@@ -86,28 +86,34 @@ void PlyStreamWriter::write_with_extras(std::span<const MeshVertex> vertices) {
   buffer.flush();
 }
 
+void PlyStreamWriter::require_known_vertices(std::span<const Triangle> triangles) const {
+  std::uint32_t most = 0;
+  for (const auto& [i, j, k] : triangles) most = std::max({most, i, j, k});
+  if (triangles.empty() || most < num_vertices_) return;
+  const auto wrong = std::find_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+    return *std::max_element(t.begin(), t.end()) >= num_vertices_;
+  });
+  throw WorkError(target_.string() + ": triangle " +
+                  std::to_string(num_triangles_ + static_cast<std::uint64_t>(wrong - triangles.begin())) +
+                  " names vertex " + std::to_string(*std::max_element(wrong->begin(), wrong->end())) +
+                  " of " + std::to_string(num_vertices_));
+}
+
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
-  if (triangles.empty()) return;  // as of a tile without surface
-  constexpr std::size_t kAtOnce = 4096;
-  std::vector<char> block;
-  block.reserve(std::min(kAtOnce, triangles.size()) * kPlyTriangleBytes);
-  const auto write_block = [&] {
-    if (std::fwrite(block.data(), 1, block.size(), spill_.get()) != block.size()) fail_spill();
-    block.clear();
-  };
-  for (const Triangle& triangle : triangles) {
-    for (const std::uint32_t index : triangle) {
-      if (index >= num_vertices_) {
-        throw WorkError(target_.string() + ": triangle " + std::to_string(num_triangles_) + " names vertex " +
-                        std::to_string(index) + " of " + std::to_string(num_vertices_));
-      }
+  require_known_vertices(triangles);
+  constexpr std::size_t kAtOnce = 16384;
+  std::vector<char> block(std::min(kAtOnce, triangles.size()) * kPlyTriangleBytes);
+  for (std::size_t first = 0; first < triangles.size(); first += kAtOnce) {
+    char* out = block.data();
+    for (const Triangle& triangle : triangles.subspan(first, std::min(kAtOnce, triangles.size() - first))) {
+      *out = 3;
+      std::memcpy(out + 1, triangle.data(), sizeof triangle);
+      out += kPlyTriangleBytes;
     }
-    const auto bytes = ply_triangle(triangle);
-    block.insert(block.end(), bytes.begin(), bytes.end());
-    if (block.size() == kAtOnce * kPlyTriangleBytes) write_block();
-    ++num_triangles_;
+    const auto bytes = static_cast<std::size_t>(out - block.data());
+    if (std::fwrite(block.data(), 1, bytes, spill_.get()) != bytes) fail_spill();
   }
-  write_block();
+  num_triangles_ += triangles.size();
 }
 
 void PlyStreamWriter::finish() {

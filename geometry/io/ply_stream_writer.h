@@ -54,6 +54,7 @@ class PlyStreamWriter : public MeshSink {
  private:
   [[noreturn]] void fail_spill() const;
   void append_spill();
+  void require_known_vertices(std::span<const Triangle> triangles) const;
   std::string header() const;
   void write_with_extras(std::span<const MeshVertex> vertices);
 

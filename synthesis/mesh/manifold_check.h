@@ -3,6 +3,7 @@
 // batches, however large the mesh is.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,22 +35,36 @@ class ManifoldCheck : public MeshSink {
   // Checks the vertices that are still in the window. Must be called once, at the end.
   ManifoldReport finish();
 
- private:
-  // One triangle seen from its vertex: the directed edge opposite to it.
-  struct Corner {
-    std::uint32_t vertex, from, to;
+  // A triangle seen from one of its vertices: the directed edge opposite to it.
+  struct OppositeEdge {
+    std::uint32_t from, to;
   };
 
-  void settle(std::vector<Corner>& corners, std::uint32_t first, std::uint32_t end);
+ private:
+  // The link of a vertex: the edges opposite to it in its triangles. Few vertices have more than eight; the
+  // edges of these beyond the eighth are in `others_`.
+  struct Link {
+    std::array<OppositeEdge, 8> edges;
+  };
+  struct OtherEdge {
+    std::uint32_t vertex;
+    OppositeEdge edge;
+  };
+
+  void add_to_link(std::uint32_t vertex, OppositeEdge edge);
+  void settle(std::uint32_t end);
   std::uint32_t root(std::uint32_t vertex);
   void unite(std::uint32_t a, std::uint32_t b);
   void forget_components_below(std::uint32_t first);
 
-  std::uint32_t window_first_ = 0;      // first vertex of the batch before the last
-  std::uint32_t batch_first_ = 0;       // first vertex of the last batch
-  std::uint32_t end_ = 0;               // number of vertices so far
-  std::vector<Corner> window_, batch_;  // corners at the vertices of the batch before and of the last batch
-  std::vector<std::uint32_t> parent_;   // union-find over the vertices from window_first_ on
+  std::uint32_t window_first_ = 0;  // first vertex of the batch before the last
+  std::uint32_t batch_first_ = 0;   // first vertex of the last batch
+  std::uint32_t end_ = 0;           // number of vertices so far
+  // Of the vertices from window_first_ on.
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> counts_;  // of the edges of each link
+  std::vector<std::uint32_t> parent_;  // union-find
+  std::vector<OtherEdge> others_;
   ManifoldReport report_;
 };
 
