@@ -34,10 +34,10 @@ LabelBeside label_beside(const std::filesystem::path& file) {
   constexpr std::size_t kMostLabel = std::size_t{1} << 18;
   const std::string name = lower_case(file.filename().string());
   for (const char* extension : {".lbl", ".LBL", ".xml", ".XML"}) {
-    LabelBeside label{std::filesystem::path(file).replace_extension(extension),
-                      std::string(kMostLabel, '\0')};
+    const std::filesystem::path path = std::filesystem::path(file).replace_extension(extension);
     std::error_code error;
-    if (label.path == file || !std::filesystem::is_regular_file(label.path, error)) continue;
+    if (path == file || !std::filesystem::is_regular_file(path, error)) continue;
+    LabelBeside label{path, std::string(kMostLabel, '\0')};
     std::ifstream in(label.path, std::ios::binary);
     in.read(label.text.data(), static_cast<std::streamsize>(label.text.size()));
     label.text.resize(static_cast<std::size_t>(in.gcount()));
