@@ -11,6 +11,7 @@
 #include "estimation/gabor/lobes/lobe_selection.h"
 #include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
@@ -18,6 +19,9 @@ namespace astrolith {
 namespace {
 
 constexpr int kWidestBandwidth = 2;
+
+// The fractions of the work after which the photo's spectrum is known, and of the rest, its estimate.
+constexpr double kSpectrumDone = 0.1, kEstimateDone = 0.2;
 
 void require_sides(int width, int height, const std::string& name) {
   if (std::min(width, height) >= kSmallestExemplarSide) return;
@@ -99,6 +103,19 @@ std::vector<SpectralLobe> refined(const std::vector<SpectralLobe>& lobes, const 
   return std::move(best.lobes);
 }
 
+// Where the work was stopped, the strongest lobes take the place of a selection.
+std::vector<SpectralLobe> selected(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
+                                   const std::vector<double>& weight, int max_lobes,
+                                   const Progress& progress) {
+  if (report(progress, 1.0, "selection")) {
+    try {
+      return select_lobes(lobes, spectrum, weight, max_lobes, progress);
+    } catch (const WorkError&) {
+    }
+  }
+  return strongest_lobes(std::move(lobes), max_lobes, spectrum.width, spectrum.height);
+}
+
 // The smallest standard deviation of an exemplar. With a smaller one, the variance of a lobe could fall out
 // of the range of a recipe.
 constexpr double kSmallestContrast = 1e-4;
@@ -142,11 +159,13 @@ std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, Ga
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress) {
   require_texture(exemplar, name);
-  PowerSpectrum periodogram = exemplar_periodogram(exemplar, options.largest_side, progress);
+  PowerSpectrum periodogram =
+      exemplar_periodogram(exemplar, options.largest_side, stretch(progress, 0.0, kSpectrumDone));
   if (!(periodogram.variance() > kLeastTexture * variance_of(exemplar.values))) {
     throw InputError(name + ": holds light from one side or a slope and no texture; use another image");
   }
-  GaborFit fit = fit_gabor_spectrum(std::move(periodogram), name, options, progress);
+  GaborFit fit =
+      fit_gabor_spectrum(std::move(periodogram), name, options, stretch(progress, kSpectrumDone, 1.0));
   fit.exemplar_mean = mean_of(exemplar.values);
   return fit;
 }
@@ -160,10 +179,11 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
-  fit.estimate = estimate_spectrum(fit.periodogram, progress);
+  fit.estimate = estimate_spectrum(fit.periodogram, stretch(progress, 0.0, kEstimateDone));
+  const Progress rest = stretch(progress, kEstimateDone, 1.0);
   bool stopped = false;
   const auto heeded = [&](double fraction, std::string_view words) {
-    const bool goes_on = report(progress, fraction, words);
+    const bool goes_on = report(rest, fraction, words);
     stopped = stopped || !goes_on;
     return goes_on;
   };
@@ -171,7 +191,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   if (heeded(0.0, "starting")) lobes = pursue(fit, options, heeded);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate);
-  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
+  lobes = selected(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes, heeded);
   lobes = refined(lobes, weight, heeded, fit);
   if (lobes.empty()) {
     if (stopped) throw WorkError(name + ": stopped before a lobe was found; nothing is written");

@@ -15,7 +15,7 @@
 #include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "numerics/reported_loop.h"
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -186,14 +186,14 @@ class Surrogates {
     for (const std::complex<double>& c : half) moduli_.push_back(std::abs(c));
   }
 
-  // The measures of surrogate number `index`.
-  Measures measure(std::uint64_t index) const {
-    CounterRandom random(seed_, index);
-    const std::vector<std::size_t> turns = turns_of(index);
+  // A surrogate that is being measured, piece by piece.
+  struct Surrogate {
+    CounterRandom random;
+    std::vector<std::size_t> turns;
     MeasureSums sums;
-    for (std::size_t t = 0; t < pieces_; ++t) sums.add(piece(t, turns, random));
-    return sums.measures();
-  }
+  };
+  Surrogate begin(std::uint64_t index) const { return {CounterRandom(seed_, index), turns_of(index), {}}; }
+  void add_piece(std::size_t t, Surrogate& s) const { s.sums.add(piece(t, s.turns, s.random)); }
 
  private:
   // By how many pieces the moduli of each frequency are turned. A lone piece keeps its own.
@@ -312,6 +312,27 @@ std::string sentence_for(const Gaussianity& g) {
          ". The noise keeps its spectrum, and not its shapes.";
 }
 
+// Fills samples[1] and those behind it. A few surrogates at a time take a piece each between two reports.
+void measure_surrogates(const Surrogates& noise, int pieces, std::vector<Measures>& samples,
+                        const Progress& progress) {
+  const auto together = static_cast<std::size_t>(std::max(thread_limit(), 1));
+  for (std::size_t first = 1; first < samples.size(); first += together) {
+    std::vector<Surrogates::Surrogate> group;
+    for (std::size_t k = first; k < std::min(first + together, samples.size()); ++k)
+      group.push_back(noise.begin(k));
+    for (int t = 0; t < pieces; ++t) {
+      const double done = static_cast<double>(first - 1) +
+                          static_cast<double>(group.size() * static_cast<std::size_t>(t)) / pieces;
+      if (!report(progress, done / static_cast<double>(samples.size()), kComparing))
+        throw WorkError("gaussianity: stopped");
+      parallel_for(0, static_cast<std::int64_t>(group.size()), [&](std::int64_t i) {
+        noise.add_piece(static_cast<std::size_t>(t), group[static_cast<std::size_t>(i)]);
+      });
+    }
+    for (std::size_t i = 0; i < group.size(); ++i) samples[first + i] = group[i].sums.measures();
+  }
+}
+
 }  // namespace
 
 // False alarms at p <= 0.05 over 200 Gaussian textures, measured by gaussianity_benchmark of release
@@ -331,10 +352,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   const int surrogates = std::clamp(kSurrogatePieces / pieces.count(), kFewestSurrogates, kMostSurrogates);
   std::vector<Measures> samples(static_cast<std::size_t>(surrogates) + 1);
   samples[0] = photo.measures();
-  reported_parallel_for({1, surrogates + 1, surrogates + 1}, progress, kComparing, [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
-    samples[k] = noise.measure(k);
-  });
+  measure_surrogates(noise, pieces.count(), samples, progress);
 
   Gaussianity result;
   result.skewness = samples[0].skewness;

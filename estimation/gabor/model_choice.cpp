@@ -1,6 +1,7 @@
 #include "estimation/gabor/model_choice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/sample_statistics.h"
+#include "numerics/watched_work.h"
 #include "synthesis/gabor/gabor_texture.h"
 
 namespace astrolith {
@@ -54,16 +56,17 @@ GreyImage lobe_texture(const GaborFit& fit, const GreyImage& square, std::uint64
 }
 
 std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, const std::string& name,
-                                   const GaborFitOptions& options, std::uint64_t seed) {
+                                   const GaborFitOptions& options, std::uint64_t seed, const Progress& heed) {
   std::vector<GreyImage> textures;
   if (model == TextureModel::kGabor) {
-    const GaborFit fit = fit_gabor_lobes(square, name, options);
+    const GaborFit fit = fit_gabor_lobes(square, name, options, heed);
     for (int t = 0; t < kTextures; ++t)
       textures.push_back(lobe_texture(fit, square, seed + static_cast<std::uint64_t>(t)));
     return textures;
   }
-  const ExemplarLayer layer = model == TextureModel::kPhase ? phase_exemplar({square}, name, seed)
-                                                            : prepare_exemplar(square, name, seed).layer;
+  const ExemplarLayer layer = model == TextureModel::kPhase
+                                  ? phase_exemplar({square}, name, seed)
+                                  : prepare_exemplar(square, name, seed, heed).layer;
   for (int t = 0; t < kTextures; ++t)
     textures.push_back(exemplar_texture_like(layer, square, seed + static_cast<std::uint64_t>(t)));
   return textures;
@@ -153,18 +156,23 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
   const std::vector<TextureDistributions> distributions = distributions_of(squares, side);
   choice.photo = score_of_squares(distributions);
   Scores scores;
-  for (const TextureModel model : kTextureModels) {
-    const auto m = static_cast<std::size_t>(model);
-    if (!report(progress, static_cast<double>(m) / 3.0, "comparing models")) {
+  for (std::vector<TextureScore>& of_model : scores) of_model.resize(squares.size());
+  const std::size_t all = scores.size() * squares.size();
+  std::atomic<std::size_t> done{0};
+  watched_work(progress, "comparing models", [&](const Progress& heed) {
+    const auto part = [&](double, std::string_view words) {
+      if (report(heed, static_cast<double>(done) / static_cast<double>(all), words)) return true;
       throw WorkError(name + ": stopped before a model was chosen; nothing is written");
-    }
-    scores[m].resize(squares.size());
-    parallel_for(0, static_cast<std::int64_t>(squares.size()), [&](std::int64_t i) {
-      const auto k = static_cast<std::size_t>(i);
-      const std::vector<GreyImage> textures = textures_of(model, squares[k], name, options, seed);
+    };
+    parallel_for(0, static_cast<std::int64_t>(all), [&](std::int64_t i) {
+      const std::size_t m = static_cast<std::size_t>(i) / squares.size(),
+                        k = static_cast<std::size_t>(i) % squares.size();
+      const std::vector<GreyImage> textures =
+          textures_of(kTextureModels[m], squares[k], name, options, seed, part);
       scores[m][k] = held_out_score(distributions_of(textures, side), distributions, k);
+      ++done;
     });
-  }
+  });
   for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summary_of(scores[m]);
   choice.taken = simplest_of_the_best(scores, choice.scores);
   return choice;

@@ -8,6 +8,7 @@
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/image/missing_ground.h"
 #include "numerics/errors.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
@@ -151,9 +152,9 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
     const auto share = [&](double done, std::string_view words) {
       return report(progress, (static_cast<double>(k) + done) / count, words);
     };
-    channel.fit = fit_gabor_lobes(channel.exemplar, name, options.fit, share);
-    channel.gaussianity = tested(known_texture(channel.exemplar), options.seed,
-                                 [&](double, std::string_view words) { return share(1.0, words); });
+    constexpr double kFitted = 0.8;
+    channel.fit = fit_gabor_lobes(channel.exemplar, name, options.fit, stretch(share, 0.0, kFitted));
+    channel.gaussianity = tested(known_texture(channel.exemplar), options.seed, stretch(share, kFitted, 1.0));
   }
   return photo;
 }

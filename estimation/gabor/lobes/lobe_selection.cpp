@@ -4,11 +4,15 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "estimation/gabor/pursuit/lobe_overlap.h"
 #include "estimation/gabor/pursuit/nonnegative_quadratic.h"
+#include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -39,8 +43,9 @@ struct HeightFit {
     smaller.x = x(kept);
     *this = std::move(smaller);
   }
-  void solve_and_drop_zeros() {
-    minimize_nonnegative_quadratic(G, q, x);
+  void solve_and_drop_zeros(const Progress& progress) {
+    minimize_nonnegative_quadratic(G, q, x, std::numeric_limits<int>::max(), at_beginning(progress));
+    if (!report(progress, 0.0, "selection")) throw WorkError("selection: stopped");
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       if (x(i) > 0.0) kept.push_back(i);
@@ -50,7 +55,7 @@ struct HeightFit {
 };
 
 HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
-                 const std::vector<double>& weight) {
+                 const std::vector<double>& weight, const Progress& progress) {
   HeightFit fit;
   const auto n = static_cast<Eigen::Index>(lobes.size());
   std::vector<double> metric(spectrum.power.size());
@@ -72,7 +77,7 @@ HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
   fit.G.resize(n, n);
   fit.q.resize(n);
   fit.x.resize(n);
-  parallel_for(0, n, [&](std::int64_t r) {
+  reported_parallel_for({0, n, n}, at_beginning(progress), "selection", [&](std::int64_t r) {
     const auto k = static_cast<std::size_t>(r);
     fit.q(r) = lobe_sum(weighted, profiles[k]);
     fit.x(r) = lobes[k].height * fit.norms[k];
@@ -123,18 +128,31 @@ std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std:
 }
 
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
-                                       const std::vector<double>& weight, int max_lobes) {
+                                       const std::vector<double>& weight, int max_lobes,
+                                       const Progress& progress) {
   if (lobes.empty()) return lobes;
-  HeightFit fit = set_up(std::move(lobes), spectrum, weight);
-  fit.solve_and_drop_zeros();
+  HeightFit fit = set_up(std::move(lobes), spectrum, weight, progress);
+  fit.solve_and_drop_zeros(progress);
   if (fit.x.size() > max_lobes) {
     fit.keep(most_needed(fit, max_lobes));
-    fit.solve_and_drop_zeros();
+    fit.solve_and_drop_zeros(progress);
   }
   for (std::size_t k = 0; k < fit.lobes.size(); ++k) {
     fit.lobes[k].height = fit.x(static_cast<Eigen::Index>(k)) / fit.norms[k];
   }
   return fit.lobes;
+}
+
+std::vector<SpectralLobe> strongest_lobes(std::vector<SpectralLobe> lobes, int max_lobes, int width,
+                                          int height) {
+  if (static_cast<int>(lobes.size()) <= max_lobes) return lobes;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < lobes.size(); ++i)
+    order.emplace_back(-lobe_variance(lobes[i], width, height), i);
+  std::sort(order.begin(), order.end());
+  std::vector<SpectralLobe> strongest;
+  for (int k = 0; k < max_lobes; ++k) strongest.push_back(lobes[order[static_cast<std::size_t>(k)].second]);
+  return strongest;
 }
 
 double lobe_variance(const SpectralLobe& lobe, int width, int height) {

@@ -5,6 +5,7 @@
 
 #include "estimation/gabor/pursuit/basis_pursuit.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -23,9 +24,14 @@ std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std:
 // a non-negative least squares of weight * (model - spectrum), with the weights of the dictionary. Then lobes
 // are removed one by one until at most max_lobes are left. Each time the lobe goes whose removal raises the
 // sum of squares least, after all others are refitted. So the first to go is a lobe whose neighbour can
-// replace it.
+// replace it. Throws WorkError when progress asks to stop.
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
-                                       const std::vector<double>& weight, int max_lobes);
+                                       const std::vector<double>& weight, int max_lobes,
+                                       const Progress& progress = {});
+
+// The lobes of the largest variances as they are, for work that was stopped.
+std::vector<SpectralLobe> strongest_lobes(std::vector<SpectralLobe> lobes, int max_lobes, int width,
+                                          int height);
 
 // The variance that a lobe adds to a texture of width x height pixels: its mean over the grid, frequency 0
 // included.

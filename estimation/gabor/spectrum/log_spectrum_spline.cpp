@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "numerics/errors.h"
 #include "numerics/sample_statistics.h"
 
 namespace astrolith {
@@ -44,7 +45,7 @@ class WhittleFit {
         penalty_(std::pow(w, 6)),
         half_(fourier.half_size()) {}
 
-  std::vector<double> minimize(std::vector<double> start) {
+  std::vector<double> minimize(std::vector<double> start, const Progress& progress) {
     constexpr int kMaxSteps = 60;
     const std::size_t n = start.size();
     const double negligible = 1e-6 * looks_ * static_cast<double>(n);
@@ -53,6 +54,9 @@ class WhittleFit {
     multiply_by_penalty(now.g, now.rough);
     double value = objective(now);
     for (int k = 0; k < kMaxSteps; ++k) {
+      if (!report(progress, 0.0, "smoothing")) {
+        throw WorkError("stopped before the spectrum was estimated; nothing is written");
+      }
       const double trial_value = search_along_scoring_step(now, value, trial);
       if (!(trial_value < value)) break;
       std::swap(now, trial);
@@ -134,10 +138,11 @@ LogSpectrumSpline::LogSpectrumSpline(const PowerSpectrum& periodogram)
   }
 }
 
-std::vector<double> LogSpectrumSpline::fit(double w, std::vector<double> start) const {
+std::vector<double> LogSpectrumSpline::fit(double w, std::vector<double> start,
+                                           const Progress& progress) const {
   WhittleFit whittle(periodogram_, fourier_, cubed_laplacian_, w);
   if (start.empty()) start = log_periodogram(periodogram_);
-  return whittle.minimize(std::move(start));
+  return whittle.minimize(std::move(start), progress);
 }
 
 LogSpectrumSpline::Freedom LogSpectrumSpline::freedom(double w) const {

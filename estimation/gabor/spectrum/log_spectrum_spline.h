@@ -25,8 +25,9 @@ class LogSpectrumSpline {
   explicit LogSpectrumSpline(const PowerSpectrum& periodogram);  // which must outlive the spline
 
   // g on the grid, row-major; the value at frequency 0 is extrapolated. w > 0. `start` is a first guess, such
-  // as the fit with a smaller w. If it is empty, the fit starts from the logarithm of the periodogram.
-  std::vector<double> fit(double w, std::vector<double> start = {}) const;
+  // as the fit with a smaller w. If it is empty, the fit starts from the logarithm of the periodogram. Throws
+  // WorkError when progress asks to stop.
+  std::vector<double> fit(double w, std::vector<double> start = {}, const Progress& progress = {}) const;
 
   // The degrees of freedom of a fit, with h = n / (n + w^6 L^3).
   struct Freedom {

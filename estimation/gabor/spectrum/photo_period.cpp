@@ -9,6 +9,7 @@
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "numerics/errors.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 
 namespace astrolith {
@@ -30,10 +31,12 @@ RowSums sums_of_rows(const std::vector<GreyImage>& planes, const Progress& progr
   RowSums sums{std::vector<double>(fourier.grid_size()), std::vector<double>(static_cast<std::size_t>(n))};
   std::vector<double> row(fourier.grid_size());
   std::vector<std::complex<double>> half(fourier.half_size()), power(fourier.half_size());
+  std::size_t rows = 0;
   for (const GreyImage& plane : planes) {
     const double mean = mean_of(plane.values);
     for (int y = 0; y < plane.height; ++y) {
-      if (!report(progress, 0.0, "looking for a period")) throw WorkError("stopped; nothing is written");
+      const double done = static_cast<double>(rows++) / static_cast<double>(planes.size()) / plane.height;
+      if (!report(progress, done, "looking for a period")) throw WorkError("stopped; nothing is written");
       for (int x = 0; x < n; ++x) {
         const auto i = static_cast<std::size_t>(x);
         row[i] = plane.at(x, y) - mean;
@@ -128,8 +131,8 @@ std::vector<GreyImage> cut_along_rows(std::vector<GreyImage> planes, int period,
 
 PhotoPeriod find_period(const std::vector<GreyImage>& planes, const Progress& progress) {
   PhotoPeriod period;
-  period.x = period_along_rows(planes, progress);
-  period.y = period_along_rows(all_transposed(planes), progress);
+  period.x = period_along_rows(planes, stretch(progress, 0.0, 0.5));
+  period.y = period_along_rows(all_transposed(planes), stretch(progress, 0.5, 1.0));
   return period;
 }
 

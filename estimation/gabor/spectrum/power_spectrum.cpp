@@ -80,9 +80,11 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, con
   const std::vector<int> xs = segment_starts(image.width, segment_width);
   const std::vector<int> ys = segment_starts(image.height, segment_height);
   TaperedPower sum;
+  std::size_t taken = 0;
   for (const int y : ys) {
     for (const int x : xs) {
-      if (!report(progress, 0.0, "spectrum of the photo")) {
+      const double done = static_cast<double>(taken++) / static_cast<double>(xs.size() * ys.size());
+      if (!report(progress, done, "spectrum of the photo")) {
         throw WorkError("stopped before the spectrum was known; nothing is written");
       }
       sum.add(tapered_power(image.part(x, y, segment_width, segment_height), segment_width, segment_height));

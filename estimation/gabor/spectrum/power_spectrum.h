@@ -31,7 +31,7 @@ PowerSpectrum power_spectrum(const GreyImage& image);
 // The periodogram to which lobes are fitted, with the mean removed and the borders faded out, unless the
 // exemplar repeats (border_taper.h). An image with a side above `largest_side` is cut into half-overlapping
 // segments of at most this side, whose periodograms are averaged (Welch 1967). This lowers speckle and bounds
-// memory; frequencies below one cycle per segment are lost. Reports progress 0 after each segment, and throws
+// memory; frequencies below one cycle per segment are lost. Reports progress before each segment, and throws
 // WorkError when asked to stop.
 PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side = 1024,
                                    const Progress& progress = {});

@@ -78,12 +78,13 @@ std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std:
                                     const Progress& progress) {
   const LogSpectrumSpline spline(periodogram);
   std::vector<TriedSpline> tried;
-  for (const double w : widths_tried(periodogram)) {
-    if (!report(progress, 0.0, "smoothing")) {
-      throw WorkError("stopped before the spectrum was estimated; nothing is written");
-    }
+  const std::vector<double> widths = widths_tried(periodogram);
+  for (const double w : widths) {
+    const double done = static_cast<double>(tried.size()) / static_cast<double>(widths.size());
+    const auto at_width = [&](double, std::string_view words) { return report(progress, done, words); };
     TriedSpline next{w, {}, {}, spline.freedom(w)};
-    next.g = symmetrised(spline.fit(w, tried.empty() ? std::vector<double>{} : tried.back().g), periodogram);
+    next.g = symmetrised(spline.fit(w, tried.empty() ? std::vector<double>{} : tried.back().g, at_width),
+                         periodogram);
     next.scores = octave_scores(periodogram, next.g, next.freedom.parameters, positions);
     tried.push_back(std::move(next));
     if (grown_worse(tried)) break;
