@@ -177,21 +177,23 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
   std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
   const ThreadLimit limit(threads);
+  const auto ended = [](int status) {
+    if (interrupted()) die_of_signal();
+    return status;
+  };
   try {
     timed(work);
     end_bar();
-    if (interrupted()) die_of_signal();
-    return part_failed_ ? 1 : 0;
+    return ended(part_failed_ ? 1 : 0);
   } catch (const InputError& e) {
     print_line(fmt::format("{}: {}", name_, naming_options(e.what())));
-    return 2;
+    return ended(2);
   } catch (const std::bad_alloc&) {
     print_line(fmt::format("{}: out of memory; try a smaller resolution or fewer samples", name_));
-    return 1;
+    return ended(1);
   } catch (const std::exception& e) {
     print_line(fmt::format("{}: {}", name_, e.what()));
-    if (interrupted()) die_of_signal();
-    return 1;
+    return ended(1);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/winding_number.h"
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -59,28 +60,32 @@ std::vector<MeshPart> parts_of(const TriangleMesh& mesh, const std::vector<std::
 }
 
 double PartNesting::share_inside(const MeshPart& a, const MeshPart& b) {
-  const auto angles = static_cast<double>(b.mesh.triangles.size());
-  const auto most_faces = static_cast<std::size_t>(std::clamp(4e6 / angles, 4.0, 64.0));
+  constexpr std::size_t kMostFaces = 64;
   const std::vector<Triangle> near = faces_in(common_part(a.box, b.box), a.mesh);
   const bool coarse = a.mesh.triangles.size() < 1000;
-  double inside = 0.0, outside = 0.0;
-  for (std::size_t i = 0; i < near.size(); i += near.size() / most_faces + 1) {
-    for (const Vec3d& p : places_of(a.mesh, near[i], coarse)) {
-      angles_left_ -= angles;
-      if (spent()) return 0.0;
-      const double winding = std::abs(winding_number(b.mesh, p));
-      inside += winding > 0.75 ? 1.0 : 0.0;
-      outside += winding < 0.25 ? 1.0 : 0.0;
-    }
+  std::vector<Vec3d> places;
+  for (std::size_t i = 0; i < near.size(); i += near.size() / kMostFaces + 1) {
+    for (const Vec3d& p : places_of(a.mesh, near[i], coarse)) places.push_back(p);
   }
-  return inside > 0.0 ? inside / (inside + outside) : 0.0;
+  angles_left_ -= static_cast<double>(places.size()) * static_cast<double>(b.mesh.triangles.size());
+  if (spent()) return 0.0;
+  std::vector<double> windings(places.size());
+  parallel_for(0, static_cast<std::int64_t>(places.size()), [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    windings[k] = std::abs(winding_number(b.mesh, places[k]));
+  });
+  const auto inside = std::count_if(windings.begin(), windings.end(), [](double w) { return w > 0.75; });
+  const auto outside = std::count_if(windings.begin(), windings.end(), [](double w) { return w < 0.25; });
+  return inside > 0 ? static_cast<double>(inside) / static_cast<double>(inside + outside) : 0.0;
 }
 
 bool PartNesting::lies_inside(const MeshPart& a, const MeshPart& b) {
+  constexpr double kBoxTest = 16.0;  // about the time of so many angles
+  angles_left_ -= kBoxTest;
   const bool in_box = a.box.min.x >= b.box.min.x && a.box.min.y >= b.box.min.y &&
                       a.box.min.z >= b.box.min.z && a.box.max.x <= b.box.max.x &&
                       a.box.max.y <= b.box.max.y && a.box.max.z <= b.box.max.z;
-  return in_box && share_inside(a, b) == 1.0;
+  return in_box && !spent() && share_inside(a, b) == 1.0;
 }
 
 }  // namespace astrolith

@@ -18,11 +18,11 @@ struct MeshPart {
 std::vector<MeshPart> parts_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number);
 
 // Answers whether parts lie inside one another, by winding numbers at places of their surfaces. The work is
-// bounded: 1e8 solid angles of triangles in all.
+// bounded: 2e8 solid angles of triangles in all.
 class PartNesting {
  public:
   // The share of the surface of `a`, of what lies in the box of `b` alone, that lies inside `b`; 0 where
-  // nothing does. Places on the surface of `b` do not count. 4 to 64 faces of `a` are looked at, those of
+  // nothing does. Places on the surface of `b` do not count. Up to 64 faces of `a` are looked at, those of
   // meshes with few faces at more places than one.
   double share_inside(const MeshPart& a, const MeshPart& b);
   // Whether `a` lies in the box of `b`, and all places that are looked at inside `b`.
@@ -31,7 +31,7 @@ class PartNesting {
   bool spent() const { return angles_left_ < 0.0; }
 
  private:
-  double angles_left_ = 1e8;
+  double angles_left_ = 2e8;
 };
 
 }  // namespace astrolith

@@ -74,10 +74,13 @@ Components wind_components(TriangleMesh& mesh) {
   return components;
 }
 
-constexpr std::size_t kUnknown = ~std::size_t{0};
+bool box_holds(const Box& outer, const Box& inner) {
+  const Box common = common_part(outer, inner);
+  return common.min == inner.min && common.max == inner.max;
+}
 
-// (#parts) the outermost part around each, or the part itself; kUnknown where finding out would take too
-// long.
+// (#parts) the outermost part around each, or the part itself. Where finding out would take too long, a part
+// in the box of the largest belongs to that.
 std::vector<std::size_t> outermost(const std::vector<MeshPart>& parts) {
   std::vector<std::size_t> by_volume(parts.size());
   std::iota(by_volume.begin(), by_volume.end(), std::size_t{0});
@@ -86,13 +89,14 @@ std::vector<std::size_t> outermost(const std::vector<MeshPart>& parts) {
   });
   std::vector<std::size_t> around(parts.size());
   PartNesting nesting;
+  const std::size_t largest = by_volume.front();
   for (std::size_t i = 0; i < by_volume.size(); ++i) {
     const std::size_t inner = by_volume[i];
     around[inner] = inner;
-    for (std::size_t j = 0; j < i && around[inner] == inner; ++j) {
+    for (std::size_t j = 0; j < i && around[inner] == inner && !nesting.spent(); ++j) {
       if (nesting.lies_inside(parts[inner], parts[by_volume[j]])) around[inner] = around[by_volume[j]];
     }
-    if (nesting.spent()) around[inner] = kUnknown;
+    if (nesting.spent() && box_holds(parts[largest].box, parts[inner].box)) around[inner] = largest;
   }
   return around;
 }
@@ -114,8 +118,7 @@ TriangleMesh orient_faces(TriangleMesh mesh) {
   if (!any) return mesh;
   const std::vector<std::size_t> around = outermost(parts);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const std::size_t outer = around[components.number[f]];
-    if (outer != kUnknown && inside_out[outer] != 0) turn(mesh.triangles[f]);
+    if (inside_out[around[components.number[f]]] != 0) turn(mesh.triangles[f]);
   }
   return mesh;
 }

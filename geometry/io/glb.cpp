@@ -184,7 +184,8 @@ void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::strin
 
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   std::optional<LongitudeLatitude> map;
-  if (info.texture_coordinates) map = longitude_latitude(mesh, info.origin.value_or(Vec3d{}));
+  if (info.texture_coordinates)
+    map = longitude_latitude(mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
   const GlbDocument document(mesh, map, info);
   std::string json = document.json();
   json.resize((json.size() + 3) / 4 * 4, ' ');

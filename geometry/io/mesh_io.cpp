@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <locale>
+#include <sstream>
 
 #include "geometry/io/format_internal.h"
 
@@ -65,11 +67,19 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
   }
 }
 
-// Coordinates relative to an origin that the file states become those of its frame.
-TriangleMesh in_frame(TriangleMesh mesh, const std::filesystem::path& file) {
-  if (const std::optional<Vec3d> origin = stated_origin(file)) {
-    for (Vec3d& p : mesh.vertices) p += *origin;
+// A whole body whose coordinates are relative to an origin that a comment states gets those of its frame.
+TriangleMesh in_frame(TriangleMesh mesh, const MeshFile& file) {
+  constexpr std::size_t kMostHeader = 4096, kLongestPoint = 100;
+  const std::string_view header = std::string_view(file.bytes).substr(0, kMostHeader);
+  const std::size_t at = header.find(kOriginOfBody);
+  if (at == header.npos) return mesh;
+  std::istringstream words{std::string(header.substr(at + kOriginOfBody.size(), kLongestPoint))};
+  words.imbue(std::locale::classic());
+  Vec3d origin;
+  if (!(words >> origin.x >> origin.y >> origin.z)) {
+    file.fail("comment", "states an origin of the body that is no three numbers", "mend it or take it out");
   }
+  for (Vec3d& p : mesh.vertices) p += origin;
   return mesh;
 }
 
@@ -77,7 +87,7 @@ TriangleMesh in_frame(TriangleMesh mesh, const std::filesystem::path& file) {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = in_frame(read_content(content), file);
+  TriangleMesh mesh = in_frame(read_content(content), content);
   if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
   require_valid(content, mesh);
   return mesh;
@@ -85,7 +95,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
 
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = in_frame(read_content(content), file);
+  TriangleMesh mesh = in_frame(read_content(content), content);
   if (mesh.triangles.empty() && mesh.normals.empty()) {
     content.fail("", "holds neither faces nor points with unit normals",
                  "give a mesh, or a .ply with x y z nx ny nz");
@@ -97,22 +107,23 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   const MeshFormat& format = written_mesh_format(file);
   require_writable(mesh, file);
-  if (!info.origin || format.tells_origin) return format.writer(mesh, file, info);
+  if (!info.origin || !info.whole_body || format.tells_origin) return format.writer(mesh, file, info);
   TriangleMesh moved = mesh;
   for (Vec3d& p : moved.vertices) p += *info.origin;
+  require_writable(moved, file);
   format.writer(moved, file, info);
 }
 
 std::vector<std::string> info_lines(const MeshFileInfo& info) {
   std::vector<std::string> lines;
-  const auto add = [&](const char* label, std::string text) {
+  const auto add = [&](std::string_view label, std::string text) {
     if (text.empty()) return;
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    lines.push_back(label + text);
+    lines.push_back(std::string(label) + text);
   };
   add("length unit: ", info.length_unit);
-  if (info.origin) add(kOriginLabel, point_text(*info.origin));
+  if (info.origin) add(info.whole_body ? kOriginOfBody : kOriginOfPart, point_text(*info.origin));
   add("frame: ", info.frame);
   add("", info.comment);
   for (const std::string& note : info.notes) add("", note);

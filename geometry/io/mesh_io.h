@@ -45,16 +45,13 @@ struct MeshFileInfo {
   // The place in `frame` of the point that coordinates are relative to; absent where they are relative to the
   // origin of the frame.
   std::optional<Vec3d> origin = std::nullopt;
+  bool whole_body = false;              // readers add the origin of a whole body, not that of a part
   std::vector<std::string> notes = {};  // further comment lines
   // A .glb gets texture coordinates: u = 1/2 + longitude / 360 degrees, v = 1/2 - latitude / 180 degrees,
-  // seen from the origin of the frame. Vertices along the 180th meridian are then there twice, at equal
-  // places.
+  // seen from the origin of the frame, or of a whole body. Vertices along the 180th meridian are then there
+  // twice, at equal places.
   bool texture_coordinates = false;
 };
-
-// Reads the origin that a .ply or .obj states. None where it states none, or cannot be read. read_mesh() adds
-// it to all coordinates.
-std::optional<Vec3d> stated_origin(const std::filesystem::path& file);
 
 // Writes .ply (binary little endian, float32; .ply.zst is compressed), .obj (text, exact), .stl (binary,
 // float32) or .glb (glTF 2.0, float32; a node turns +z up into +y up and scales m, km, cm, mm to metres),
@@ -63,7 +60,7 @@ std::optional<Vec3d> stated_origin(const std::filesystem::path& file);
 // are written where the mesh and the format have them, colours of vertices into .ply (sRGB bytes) and .glb
 // (COLOR_0, linear light). Throws InputError for another extension and for a folder that cannot be written.
 // Throws WorkError for a mesh without triangles, with indices out of range, or with coordinates that float32
-// cannot hold. Formats that state no origin get the coordinates of the frame.
+// cannot hold. Formats that state no origin get a whole body's coordinates in the frame.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
 // What a file says of the unit of its lengths.

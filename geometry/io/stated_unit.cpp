@@ -1,11 +1,8 @@
 #include <algorithm>
 #include <fstream>
-#include <locale>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 
-#include "geometry/io/format_internal.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/named_table_internal.h"
 #include "geometry/io/pds_label_internal.h"
@@ -14,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kMostHeader = 4096, kLongestUnit = 8, kLongestOrigin = 100;
+constexpr std::size_t kMostHeader = 4096, kLongestUnit = 8;
 // More than the first block of a Zstandard frame takes (RFC 8878: at most 128 kB), and than labels take.
 constexpr std::size_t kMostRead = std::size_t{1} << 18;
 
@@ -78,26 +75,7 @@ std::string unit_of_line(std::string_view line) {
   return columns && is_of_lengths(columns->unit) ? columns->unit : std::string();
 }
 
-std::optional<Vec3d> point_in(std::string_view text) {
-  std::istringstream words{std::string(text)};
-  words.imbue(std::locale::classic());
-  Vec3d p;
-  if (words >> p.x >> p.y >> p.z) return p;
-  return {};
-}
-
 }  // namespace
-
-std::optional<Vec3d> stated_origin(const std::filesystem::path& file) {
-  const std::string start = start_of(file);
-  const std::string_view header = std::string_view(start).substr(0, kMostHeader);
-  for (const std::string start_of_line : {"\ncomment ", "\n# "}) {
-    const std::string label = start_of_line + kOriginLabel;
-    const std::size_t at = header.find(label);
-    if (at != header.npos) return point_in(header.substr(at + label.size(), kLongestOrigin));
-  }
-  return {};
-}
 
 StatedUnit stated_unit(const std::filesystem::path& file) {
   const std::string start = start_of(file);

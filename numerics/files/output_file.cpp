@@ -248,7 +248,9 @@ void require_other_file(const fs::path& output, const fs::path& input) {
 }
 
 void require_two_files(const fs::path& output, const fs::path& other) {
-  const auto place = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+  const auto place = [](const fs::path& file) {
+    return fs::absolute(through_links(file)).lexically_normal();
+  };
   if (place(output) == place(other)) {
     throw InputError(output.string() + ": is the name of two outputs; give each its own");
   }

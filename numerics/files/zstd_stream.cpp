@@ -66,7 +66,7 @@ void pack_zstd(std::FILE* plain, OutputFile& packed) {
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
   // Into one piece of memory, which needs none of the frame's window beside it: a few bytes may declare 8 MB.
-  constexpr std::uint64_t kLikelyGrowth = 8;
+  constexpr std::uint64_t kLikelyGrowth = 4;
   const auto unpacker = made(std::unique_ptr<ZSTD_DCtx, FreeUnpacker>(ZSTD_createDCtx()));
   for (std::uint64_t room = kLikelyGrowth * packed.size();; room *= 2) {
     std::string content(std::min(room, most_bytes), '\0');
@@ -74,6 +74,7 @@ std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
         ZSTD_decompressDCtx(unpacker.get(), content.data(), content.size(), packed.data(), packed.size());
     if (ZSTD_isError(size) == 0 && !packed.empty()) {
       content.resize(size);
+      content.shrink_to_fit();
       return content;
     }
     const ZSTD_ErrorCode error = ZSTD_getErrorCode(size);

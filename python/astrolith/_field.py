@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
 from astrolith._options import Progress
-from astrolith._recipe import RecipeLike, json_of
+from astrolith._recipe import RecipeLike, json_of, records
 
 
 class Field:
@@ -32,6 +32,7 @@ class Field:
     def __init__(self, recipe: RecipeLike) -> None:
         json, name = json_of(recipe)
         self._field = _synthesis.Field(json, name)
+        self._origin = np.asarray(records(json).get("origin", (0.0, 0.0, 0.0)), np.float64)
         self._name = name
 
     def __repr__(self) -> str:
@@ -58,20 +59,25 @@ class Field:
         ValueError
             `points` has another shape or type, or a number that is not finite.
         """
-        return self._field.value(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+        return self._field.value(self._local(points), _options.threads(threads), progress)
 
     def gradient(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.float64]:
         """Evaluate the gradient of F, (n, 3) float64 without a unit; it points inwards. As :meth:`value` otherwise."""
-        return self._field.gradient(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+        return self._field.gradient(self._local(points), _options.threads(threads), progress)
 
     def inside(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.bool_]:
         """Return (n) bool: whether F > 0. As :meth:`value` otherwise."""
-        return self._field.inside(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+        return self._field.inside(self._local(points), _options.threads(threads), progress)
+
+    def _local(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """The points relative to the recipe's origin."""
+        rows = _arrays.rows(points, "points", empty=True)
+        return rows - self._origin if self._origin.any() else rows
 
     @property
     def bounds(self) -> npt.NDArray[np.float64]:
         """(2, 3) float64: the lower and the upper corner of a box that holds the whole surface, length units."""
-        return np.array(self._field.bounds())
+        return np.array(self._field.bounds()) + self._origin
 
     @property
     def gradient_step(self) -> float:

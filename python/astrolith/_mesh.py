@@ -57,6 +57,11 @@ class Mesh:
     figures: Record = dataclasses.field(default_factory=Record)
     colors: Optional[npt.NDArray[np.uint8]] = None
 
+    @property
+    def whole_body(self) -> bool:
+        """Whether the mesh is closed, as a patch is not."""
+        return bool(self.figures.get("closed", False))
+
     def __repr__(self) -> str:
         unit = f", {self.length_unit}" if self.length_unit else ""
         return f"<astrolith.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces{unit}>"
@@ -106,8 +111,11 @@ def surface_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
     return Arrays(arrays.name, vertices, faces, None)
 
 
-def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
-    """Checks a mesh. With `points`, vertices with normals and without faces will do."""
+def arrays_of(mesh: MeshLike, name: str, *, points: bool = False, local: bool = False) -> Arrays:
+    """Checks a mesh. With `points`, vertices with normals and without faces will do.
+
+    The origin of a whole body is added to its vertices unless they are to stay `local`.
+    """
     if _arrays.is_file_name(mesh):
         file = _arrays.file_name(mesh, name)
         read = _synthesis.read_mesh(file, points)
@@ -126,6 +134,8 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
             f"{name}: must be a Mesh, a pair (vertices, faces), an object with both or a file, and is {type(mesh).__name__}"
         )
     checked = _arrays.rows(_plain(vertices), f"{name}.vertices")
+    if isinstance(mesh, Mesh) and mesh.whole_body and mesh.origin is not None and not local:
+        checked = checked + np.asarray(mesh.origin)
     faces = np.zeros((0, 3), np.uint32) if faces is None else _plain(faces)
     if normals is not None:
         normals = _arrays.rows(normals, f"{name}.normals", length=len(checked))
@@ -260,7 +270,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     uv = _arrays.flag(uv, "uv")
     if uv and not kind.texture_coordinates:
         raise ValueError(f"{file}: a {kind.extension} gets no texture coordinates; leave out uv")
-    arrays = arrays_of(mesh, "mesh")
+    arrays = arrays_of(mesh, "mesh", local=True)
     made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces, length_unit=stated_unit(mesh))
     labels = elevations = None
     if made.labels is not None and made.elevations is not None and kind["values"]:
@@ -283,6 +293,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         _arrays.text(made.frame, "mesh.frame"),
         _arrays.text(made.comment, "mesh.comment"),
         origin,
+        made.whole_body,
         [_arrays.text(line, "mesh.legend") for line in made.legend] if labels is not None else [],
         uv,
     )

@@ -6,7 +6,7 @@ import dataclasses
 from typing import Optional
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, surface_of
 from astrolith._options import Progress
 from astrolith._recipe import Recipe, RecipeLike, json_of, records
 
@@ -55,7 +55,7 @@ def vary(
     json, name = json_of(recipe)
     if records(json).get("body") is None:
         raise ValueError(f"{name}: body: absent; lay its layers on a body with Recipe.laid_on")
-    like = None if target is None else arrays_of(target, "target")
+    like = None if target is None else surface_of(target, "target")
     varied, figures = _synthesis.vary(
         json,
         name,

@@ -319,9 +319,9 @@ void write(const std::filesystem::path& file, const Rows<double>& vertices, cons
            const std::optional<Rows<double>>& normals, const std::optional<Labels>& labels,
            const std::optional<Elevations>& elevations, const std::optional<Colors>& colors,
            const std::string& length_unit, const std::string& frame, const std::string& comment,
-           const std::optional<std::array<double, 3>>& origin, const std::vector<std::string>& notes,
-           bool uv) {
-  MeshFileInfo info{length_unit, frame, comment, {}, notes, uv};
+           const std::optional<std::array<double, 3>>& origin, bool whole_body,
+           const std::vector<std::string>& notes, bool uv) {
+  MeshFileInfo info{length_unit, frame, comment, {}, whole_body, notes, uv};
   if (origin) info.origin = Vec3d{(*origin)[0], (*origin)[1], (*origin)[2]};
   std::vector<VertexLabel> of_vertices;
   if (labels && elevations) {
@@ -405,7 +405,8 @@ void bind_meshes(nb::module_& module) {
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),
              nb::arg("colors").noconvert().none(), nb::arg("length_unit"), nb::arg("frame"),
-             nb::arg("comment"), nb::arg("origin").none(), nb::arg("notes"), nb::arg("uv"));
+             nb::arg("comment"), nb::arg("origin").none(), nb::arg("whole_body"), nb::arg("notes"),
+             nb::arg("uv"));
   module.def(
       "surface_area",
       [](const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {

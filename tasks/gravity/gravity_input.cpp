@@ -4,6 +4,7 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "tasks/repair/unit_question.h"
@@ -18,8 +19,13 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file,
     TriangleMesh mesh = repair.read(file);
     // Edges of four facets, two each way, are no trouble for gravity.
     const MeshTopology topology = analyze_topology(mesh);
-    const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0;
-    if (!touches) {
+    const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0 &&
+                         !repair.unite && !repair.wrap;
+    if (touches) {
+      WoundSurface wound = wound_surface(std::move(mesh));
+      if (wound.changed()) job.say(file.string() + ": " + wound.words());
+      mesh = std::move(wound.mesh);
+    } else {
       mesh = repair.closed_body(job, std::move(mesh), file.string(), length_unit.name, repair.options(),
                                 figures);
     }

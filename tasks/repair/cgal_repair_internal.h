@@ -39,7 +39,8 @@ TriangleMesh alpha_wrapped(const TriangleMesh& mesh, double alpha, double offset
 
 // The surface of the union of all components, each of which is closed, less the cavities: components of
 // negative volume. A smaller component may lie in a larger cavity. No walls are buried. Computed exactly, and
-// rounded to doubles at the end. Throws InputError for a component that passes through itself.
+// rounded to doubles at the end. Throws InputError for a component that passes through itself, and for
+// those that touch so that no closed surface bounds their union.
 TriangleMesh united(const TriangleMesh& mesh, const std::string& name, const Progress& progress);
 
 }  // namespace astrolith

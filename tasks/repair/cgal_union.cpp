@@ -41,7 +41,9 @@ TriangleMesh rounded_mesh(const ExactMesh& exact) {
   for (const auto v : exact.vertices()) {
     number[static_cast<std::size_t>(v)] = static_cast<std::uint32_t>(mesh.vertices.size());
     const auto& p = exact.point(v);
-    mesh.vertices.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
+    // The numbers are intervals until they are asked for exactly.
+    mesh.vertices.push_back({CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y())),
+                             CGAL::to_double(CGAL::exact(p.z()))});
   }
   for (const auto f : exact.faces()) {
     Triangle t{};
@@ -93,11 +95,8 @@ TriangleMesh united(const TriangleMesh& mesh, const std::string& name, const Pro
       } catch (const PMP::Corefinement::Self_intersection_exception&) {
         throw InputError(name + ": " + failed + ": one passes through itself");
       }
-      if (done) {
-        all = std::move(both);
-      } else {  // they touch along edges or at vertices alone, and share no rock
-        all.join(solids[i].mesh);
-      }
+      if (!done) throw InputError(name + ": " + failed + ": some touch along edges or at vertices alone");
+      all = std::move(both);
     }
     return rounded_mesh(all);
   });

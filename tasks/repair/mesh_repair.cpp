@@ -350,10 +350,11 @@ void sort_bodies(MeshRepair& repair, bool all_parts) {
   repair.overlapping_parts = scene.overlapping;
   repair.nested_parts = scene.nested;
   repair.cavities = scene.cavities;
+  repair.undecided_parts = scene.undecided;
 }
 
 void unite_parts(MeshRepair& repair, const std::string& name, const Progress& progress) {
-  if (repair.overlapping_parts + repair.nested_parts == 0) return;
+  if (repair.overlapping_parts + repair.nested_parts + repair.undecided_parts == 0) return;
   repair.mesh = united(repair.mesh, name, progress);
   draw_apart(repair.mesh, repair.diagonal);
   require_sound(repair.mesh, name);
@@ -429,8 +430,10 @@ MeshRepair mend_surface(TriangleMesh mesh, const std::string& name, RepairOption
 
 TriangleMesh read_mended_surface(const std::filesystem::path& file, std::string& remark) {
   const std::string name = file.string();
-  MeshRepair repair = mend_surface(read_mesh_or_points(file), name, {});
-  remark = repair_words(repair, "");
+  RepairOptions options;
+  options.overlap = "walls lie inside it";
+  MeshRepair repair = mend_surface(read_mesh_or_points(file), name, options);
+  remark = repair_words(repair, "", options);
   const std::int64_t open = repair.mesh.triangles.empty() ? 0 : open_edges(repair.mesh);
   if (open > 0) {
     remark += (remark.empty() ? "" : "; ") + ("open, " + std::to_string(open)) +

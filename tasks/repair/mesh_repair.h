@@ -72,7 +72,8 @@ struct MeshRepair {
   std::int64_t overlapping_parts = 0;          // that reach into a larger one of the same body
   std::int64_t nested_parts = 0;               // inside a larger one, as if rock lay in rock
   std::int64_t cavities = 0;
-  bool united = false;  // overlapping and nested parts are one surface now
+  std::int64_t undecided_parts = 0;  // of which finding this out would have taken too long
+  bool united = false;               // overlapping and nested parts are one surface now
 };
 
 // Reads a mesh. Where a wrap is allowed also points: .xyz, or a file of points with normals. Throws

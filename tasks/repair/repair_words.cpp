@@ -42,6 +42,11 @@ std::string words_of_overlaps(const MeshRepair& repair, const std::string& overl
     words += fmt::format("{} in the rock of a larger one",
                          count_words(repair.nested_parts, "part lies", "parts lie"));
   }
+  if (repair.undecided_parts > 0) {
+    if (!words.empty()) words += "; ";
+    words += fmt::format("{} in the box of a larger one, not looked at closely",
+                         count_words(repair.undecided_parts, "part lies", "parts lie"));
+  }
   if (words.empty()) return words;
   return words + (repair.united ? ": united" : ": " + overlap);
 }
@@ -54,7 +59,8 @@ void append(std::string& words, const std::string& more) {
 }  // namespace
 
 bool says_of_parts(const MeshRepair& repair) {
-  return repair.bodies > 1 || repair.overlapping_parts + repair.nested_parts + repair.cavities > 0;
+  return repair.bodies > 1 ||
+         repair.overlapping_parts + repair.nested_parts + repair.cavities + repair.undecided_parts > 0;
 }
 
 std::string repair_words(const MeshRepair& repair, const std::string& unit, const RepairOptions& options) {
@@ -107,6 +113,7 @@ nlohmann::ordered_json repair_json(const MeshRepair& repair) {
           {"overlapping_parts", repair.overlapping_parts},
           {"nested_parts", repair.nested_parts},
           {"cavities", repair.cavities},
+          {"undecided_parts", repair.undecided_parts},
           {"united", repair.united}};
 }
 

@@ -26,12 +26,13 @@ std::vector<std::uint32_t> sorted_into_bodies(const std::vector<MeshPart>& parts
   PartNesting nesting;
   for (std::size_t j = 1; j < by_volume.size(); ++j) {
     const MeshPart& smaller = parts[by_volume[j]];
-    bool overlaps = false;
+    bool overlaps = false, undecided = false;
     int around = 0;  // the winding number of all that lies around it
     for (std::size_t i = 0; i < std::min(j, kMostComponents); ++i) {
       const MeshPart& larger = parts[by_volume[i]];
       if (!boxes_touch(larger.box, smaller.box)) continue;
       const bool unknown = j >= kMostComponents || nesting.spent();
+      undecided = undecided || unknown;
       const double inside = unknown ? 0.0 : nesting.share_inside(smaller, larger);
       const bool within = inside == 1.0 && nesting.lies_inside(smaller, larger);
       const bool reaches = inside > 0.0 || (!unknown && nesting.share_inside(larger, smaller) > 0.0);
@@ -39,7 +40,10 @@ std::vector<std::uint32_t> sorted_into_bodies(const std::vector<MeshPart>& parts
       if (within) around += larger.volume > 0.0 ? 1 : -1;
       overlaps = overlaps || (reaches && !within);
     }
-    if (overlaps) {
+    undecided = undecided || nesting.spent();
+    if (undecided) {
+      ++scene.undecided;
+    } else if (overlaps) {
       ++scene.overlapping;
     } else if (around > 0) {
       ++(smaller.volume > 0.0 ? scene.nested : scene.cavities);

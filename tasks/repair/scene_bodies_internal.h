@@ -14,6 +14,7 @@ struct SceneBodies {
   std::int64_t overlapping = 0;  // components that reach into a larger one
   std::int64_t nested = 0;       // components in the rock of a larger one, wound as it is
   std::int64_t cavities = 0;     // components in the rock of a larger one, wound the other way
+  std::int64_t undecided = 0;    // components of which finding this out would have taken too long
 };
 
 // The body of greatest volume, with its cavities and with the lobes that overlap it, and how the components

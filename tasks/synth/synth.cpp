@@ -180,7 +180,9 @@ TriangleMesh target_of(const Job& job, const SynthOptions& options, const Recipe
     job.say("note: " + options.target.string() + " is not the file that the recipe was fitted to, " +
             origin.input_name);
   }
-  return read_mesh(options.target);
+  WoundSurface wound = wound_surface(read_mesh(options.target));
+  if (wound.changed()) job.say(options.target.string() + ": " + wound.words());
+  return std::move(wound.mesh);
 }
 
 Recipe varied(Job& job, const SynthOptions& options, const Recipe& recipe, std::uint64_t seed) {

@@ -65,6 +65,7 @@ class MeshOutput {
         info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
     const MeshFormat& format = written_mesh_format(output);
     if (region.is_patch || !(recipe.origin == Vec3d{})) info_.origin = recipe.origin + region.center;
+    info_.whole_body = !region.is_patch;
     info_.texture_coordinates = request.texture_coordinates;
     if (has_colors(recipe) && (format.has_colors || !request.preview.file.empty())) {
       colors_.emplace(recipe, file.string(), field);

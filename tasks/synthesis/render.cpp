@@ -11,6 +11,7 @@
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
+#include "geometry/orient_faces.h"
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -76,8 +77,8 @@ void color_by(Job& job, const Arguments& a, PreviewOptions& options) {
 // Values of vertices belong to those of the file, which are not merged then.
 TriangleMesh read_surface(const Job& job, const Arguments& a) {
   TriangleMesh mesh = read_mesh(a.shape);
-  WoundSurface wound = wound_surface(mesh);
-  if (!a.color.empty() && wound.merged_vertices > 0) return mesh;
+  if (!a.color.empty()) return orient_faces(std::move(mesh));
+  WoundSurface wound = wound_surface(std::move(mesh));
   if (wound.changed()) job.say(a.shape.string() + ": " + wound.words());
   return std::move(wound.mesh);
 }

@@ -168,7 +168,7 @@ def write_dsk(
         handle = spice.dskopn(partial, "astrolith", 0)
         try:
             for number, (vertices, plates, mesh) in zip(numbers, prepared):
-                whole = not (isinstance(mesh, Mesh) and mesh.origin is not None)
+                whole = not (isinstance(mesh, Mesh) and mesh.origin is not None and not mesh.whole_body)
                 _write_segment(spice, handle, vertices, plates, whole, int(number), code, frame)
         finally:
             spice.dskcls(handle, True)

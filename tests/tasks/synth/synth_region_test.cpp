@@ -88,12 +88,25 @@ TEST_F(SynthRegion, AnAlignedPatchFillsItsHeightMap) {
   const Vec3d up{axes["up"][0], axes["up"][1], axes["up"][2]};
   EXPECT_GT(dot(up, Vec3d{0.36, 0.48, 0.8}), 0.99999);
   for (const Vec3d& p : read_mesh(folder_ / "p.ply").vertices) {
-    ASSERT_NEAR(norm(p), 1.0, 1e-4);  // along the body's axes
+    ASSERT_NEAR(norm(p + Vec3d{0.36, 0.48, 0.8}), 1.0, 1e-4);  // along the body's axes
   }
   const std::string bytes = text("p.ply");
   succeed(line + " --aligned --threads 1");
   EXPECT_TRUE(bytes == text("p.ply"));
   succeed(line + " --aligned --even");
+}
+
+// Its own coordinates have the digits; readers add the origin, and a .stl has no place for one.
+TEST_F(SynthRegion, AWholeBodyStatesTheOriginOfItsRecipe) {
+  write("far.json", replaced(ball_recipe("km", 0.5), "\"body\"", "\"origin\": [16.5, 0, -2], \"body\""));
+  for (const std::string file : {"far.ply", "far.obj", "far.stl", "far.tab"}) {
+    succeed("far.json --resolution 24 -o " + file + " --summary s.json");
+    const Vec3d middle = read_mesh(folder_ / file).bounds().center();
+    EXPECT_LT(norm(middle - Vec3d{16.5, 0, -2}), 1e-3) << file;
+    EXPECT_EQ(json("s.json").at("origin"), nlohmann::json({16.5, 0.0, -2.0})) << file;
+  }
+  EXPECT_TRUE(
+      has(text("far.ply"), "comment origin of the body, to be added to all coordinates: 16.5 0 -2\n"));
 }
 
 TEST_F(SynthRegion, PatchesAreOpenAndStateTheirOrigin) {
@@ -104,11 +117,9 @@ TEST_F(SynthRegion, PatchesAreOpenAndStateTheirOrigin) {
   EXPECT_EQ(summary.at("origin"), nlohmann::json({-1.05, 0.0, 0.125}));
   EXPECT_NEAR(summary.at("cell"), 0.3 / 32, 1e-12);
   const Box box = read_mesh(folder_ / "patch.ply").bounds();
-  EXPECT_LE(box.max.x, -1.05 + 0.1501);  // the file's coordinates with the origin added
+  EXPECT_LE(box.max.x, 0.1501);
   EXPECT_GE(box.min.y, -0.1501);
   EXPECT_GT(box.extent().y, 0.299);
-  synthesise("patch.stl", "--patch -1.05 0 0.125 0.3");  // has no place for the origin
-  EXPECT_NEAR(read_mesh(folder_ / "patch.stl").bounds().max.x, box.max.x, 1e-6);
   EXPECT_TRUE(has(synthesise("patch.glb", "--patch -1.05 0 0.125 0.3"), "\"origin\":[-1.05,0"));
 }
 
