@@ -30,14 +30,23 @@ std::atomic<int> g_signal{0};  // that came first
 // True while the cursor stands at the end of an unfinished progress bar.
 std::atomic<bool> g_bar_open{false};
 
+std::atomic<bool> g_keeps_best{false};
+
+// Called by signal handlers. Files without a name vanish with the process.
+void end_at_once(int signal_number) {
+  remove_temporary_files();
+  std::signal(signal_number, SIG_DFL);
+  std::raise(signal_number);
+}
+
+void on_alarm(int) { end_at_once(g_signal); }
+
+// Steps of libraries cannot be stopped: work that leaves nothing gets a second to say so.
 void on_interrupt(int signal_number) {
   int none = 0;
   g_signal.compare_exchange_strong(none, signal_number);
-  if (g_interrupts.fetch_add(1) > 0) {
-    remove_temporary_files();
-    std::signal(signal_number, SIG_DFL);
-    std::raise(signal_number);
-  }
+  if (g_interrupts.fetch_add(1) > 0) return end_at_once(signal_number);
+  if (!g_keeps_best) ::alarm(1);
 }
 
 // Ignored, it stays so: a shell starts its background jobs that way.
@@ -174,6 +183,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   }
   heed(SIGINT);
   heed(SIGTERM);
+  std::signal(SIGALRM, on_alarm);
   std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
   std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
   const ThreadLimit limit(threads);
@@ -239,6 +249,8 @@ Progress Program::progress(std::string stage) const {
     return !interrupted();
   };
 }
+
+void Program::keep_best_so_far() { g_keeps_best = true; }
 
 bool Program::interrupted() { return g_interrupts.load() > 0; }
 

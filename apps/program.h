@@ -24,9 +24,9 @@ class Program : public Job {
   ~Program() override;
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
-  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. After Ctrl-C the
-  // process ends by its signal in place of a return. The summary is written only when
-  // the work is done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best result so far.
+  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. After Ctrl-C
+  // the process ends by its signal in place of a return. The summary is written only when the work is done;
+  // it holds "seconds", and "interrupted" after a Ctrl-C that left a best result so far.
   int run(int argc, char** argv, const std::function<void()>& work);
 
   // Draws a bar labelled with the stage while stderr is a terminal and --quiet is not given; asks the work to
@@ -35,6 +35,7 @@ class Program : public Job {
   // True once Ctrl-C has been pressed.
   static bool interrupted();
   bool stopped() const override { return interrupted(); }
+  void keep_best_so_far() override;
   // "Ctrl-C", or "SIGTERM" where that signal came first, which counts as Ctrl-C.
   const char* stopped_by() const override;
 

@@ -374,6 +374,7 @@ void declare_photo_fit(Job& job, PhotoFitArguments& o) {
 }
 
 FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
+  if (o.model == "gabor") job.keep_best_so_far();
   check_model(job, o);
   require_outputs(o);
   if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);

@@ -290,6 +290,7 @@ void require_outputs(const FitArguments& arguments) {
 }  // namespace
 
 FittedShape fit_shape(Job& job, FitArguments& arguments) {
+  job.keep_best_so_far();
   require_outputs(arguments);
   settle_details(job, arguments.details);
   check_detail_inputs(job, arguments.details);

@@ -3,6 +3,8 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
+#include <chrono>
+#include <thread>
 
 #include <csignal>
 #include <filesystem>
@@ -186,6 +188,23 @@ TEST(ProgramDeathTest, WorkThatAStopBreaksOffDiesOfTheSignal) {
     throw WorkError("stopped before anything was made");
   };
   EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGTERM), "stopped before anything was made");
+}
+
+TEST(ProgramDeathTest, WorkThatHeedsNoStopEndsAfterASecondUnlessItKeepsAResult) {
+  const auto deaf = [](Program&) {
+    std::raise(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::seconds(20));
+  };
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EXIT(status_of({}, deaf), ::testing::KilledBySignal(SIGTERM), "");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  const auto keeping = [](Program& p) {
+    p.keep_best_so_far();
+    std::raise(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    std::fputs("kept\n", stderr);
+  };
+  EXPECT_EXIT(status_of({}, keeping), ::testing::KilledBySignal(SIGTERM), "kept");
 }
 
 // As in the background of a script.
