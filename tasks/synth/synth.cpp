@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
