@@ -43,7 +43,7 @@ Vec3d local_origin(const TriangleMesh& mesh) {
   if (!(norm(box.center()) > kFar * length)) return {};
   double steps = 1.0;  // in a unit: a power of ten, so that the numbers are short
   while (steps * length < 1.0) steps *= 10.0;
-  const auto rounded = [&](double c) { return std::round(steps * c) / steps; };
+  const auto rounded = [&](double c) { return std::round(steps * c) / steps + 0.0; };  // no -0
   const Vec3d center = box.center();
   return {rounded(center.x), rounded(center.y), rounded(center.z)};
 }
