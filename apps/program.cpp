@@ -1,6 +1,7 @@
 #include "apps/program.h"
 
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -41,12 +42,14 @@ void end_at_once(int signal_number) {
 
 void on_alarm(int) { end_at_once(g_signal); }
 
-// Steps of libraries cannot be stopped: work that leaves nothing gets a second to say so.
+// Steps of libraries cannot be stopped: work that leaves nothing gets half a second to say so. The system
+// takes its time to free much memory.
 void on_interrupt(int signal_number) {
   int none = 0;
   g_signal.compare_exchange_strong(none, signal_number);
   if (g_interrupts.fetch_add(1) > 0) return end_at_once(signal_number);
-  if (!g_keeps_best) ::alarm(1);
+  constexpr itimerval kGrace{{}, {0, 500000}};
+  if (!g_keeps_best) ::setitimer(ITIMER_REAL, &kGrace, nullptr);
 }
 
 // Ignored, it stays so: a shell starts its background jobs that way.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCrudeOpening = 0.6;
 constexpr int kCrudeOrder = 3;
-constexpr double kRoughOpening = 0.7;  // radius of a node over its distance
+constexpr double kRoughOpening = 0.5;  // radius of a node over its distance
 constexpr double kLeastAcceleration = 0.05;
 constexpr double kRoundOff = 0x1p-53;
 constexpr double kOfRounded = 5.0;    // errors of sums are nearly always below so many of their deviations

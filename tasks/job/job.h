@@ -28,7 +28,7 @@ class Job {
   // True once the caller has asked the work to stop. The job then ends with its best so far.
   virtual bool stopped() const = 0;
   // A stop will be answered by a result, however long that takes to write. Other work is ended where it
-  // stands if it has not ended a second after a stop.
+  // stands if it has not ended half a second after a stop.
   virtual void keep_best_so_far() {}
   // What asked: "Ctrl-C", for instance.
   virtual const char* stopped_by() const = 0;

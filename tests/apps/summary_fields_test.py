@@ -56,6 +56,11 @@ def runs(folder):
     write_photo(grey, 1)
     write_photo(color, 3)
     write_heights(folder / "heights.asc")
+    far = folder / "far.obj"
+    far.write_text(re.sub(r"v (\S+)", lambda m: f"v {float(m[1]) + 50}", ball.read_text()))
+    tiles = folder / "tiles.asc"
+    rows = "\n".join(" ".join(str((x % 32 * 7919 + y % 32 * 104729) * 31 % 1009) for x in range(96)) for y in range(96))
+    tiles.write_text(f"ncols 96\nnrows 96\nxllcorner 0\nyllcorner 0\ncellsize 2\n{rows}\n")
     for name, length in (("one", 1.2), ("two", 2.0)):
         (folder / name).mkdir()
         for k in range(3):
@@ -84,6 +89,7 @@ def runs(folder):
     yield ["synth", family, *members, "--predict"]
     yield ["fit_gabor", grey, "-o", folder / "grey.json", "--model", "auto"]
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
+    yield ["fit_gabor", tiles, "-o", folder / "tile.json", "--lobes", "4"]
     yield ["fit_gabor", folder / "heights.asc", "-o", folder / "ground.json", "--model", "phase"]
     heights = ["--texture", "64x64", "--texture-of", "height", "--bits"]
     for bits in ("8", "16"):
@@ -98,6 +104,7 @@ def runs(folder):
     search = ["--generations", "1", "--variations", "1", "--delta", "1", "--noise-seeds", "0"]
     yield ["fit_shape", ball, *fit, folder / "fit.json", *search]
     yield ["fit_shape", fine, *fit, folder / "relief.json", "--noise-seeds", "1"]
+    yield ["fit_shape", far, *fit, folder / "far.json", "--base-only"]
     yield ["fit_shape", ball, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
     yield ["fit_shape", holed, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
     yield ["describe", holed, "-o", folder / "description.npy", "--points", "1000"]

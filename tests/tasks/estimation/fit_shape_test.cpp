@@ -312,7 +312,7 @@ TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {
   const auto said = [&](const std::string& content) {
     return succeed(write("mesh.obj", content) + " -o t.csv --packing-only --spheres 2");
   };
-  EXPECT_TRUE(has(said(testing::kInsideOut), "inside out"));
+  EXPECT_TRUE(has(said(testing::kInsideOut), "turned 4 facets"));
   EXPECT_TRUE(
       has(said(testing::kTetrahedronVertices + "v 0 0 0\nv 1 0 0\nf 1 3 2\nf 5 2 4\nf 1 4 3\nf 6 3 4\n"),
           "2 repeated"));
