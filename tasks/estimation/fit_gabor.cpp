@@ -181,6 +181,12 @@ PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
 
 // The side of a pixel in metres that the file states.
 double stated_side(const StatedScale& scale, const std::string& name) {
+  if (scale.like_degrees) {
+    throw InputError(fmt::format(
+        "{}: its pixels of {:.4g} may be degrees, and no frame says so; give --mm-per-px, or state a frame "
+        "(gdal_edit.py -a_srs)",
+        name, scale.pixel_width));
+  }
   constexpr double kNearlySquare = 1.05;
   const auto [less, more] = std::minmax(scale.pixel_width, scale.pixel_height);
   if (scale.sheared || more > kNearlySquare * less) {
@@ -379,8 +385,8 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   require_outputs(o);
   if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
   predict_memory(job, o, photo_options(job, o));
-  ColorImageFile photo =
-      o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, o.channels == "pca");
+  ColorImageFile photo = o.in_memory ? ColorImageFile{*o.in_memory, {}}
+                                     : read_image(o.image, o.channels == "pca", job.progress("photo"));
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   take_stated_scale(job, photo, o);
   const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};

@@ -2,6 +2,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -36,6 +37,16 @@ MiddlePixels middle_of(GDALDataset& raster, const GeoTransform& t) {
   const double column = 0.5 * raster.GetRasterXSize(), row = 0.5 * raster.GetRasterYSize();
   const double x = t[0] + column * t[1] + row * t[2], y = t[3] + column * t[4] + row * t[5];
   return {{x, x + t[1], x + t[2]}, {y, y + t[4], y + t[5]}};
+}
+
+// Whether the map would be at least half as wide and half as high as a globe's, and no larger.
+bool like_a_globe(GDALDataset& raster, const GeoTransform& t) {
+  const double width = raster.GetRasterXSize() * t[1], height = raster.GetRasterYSize() * t[5];
+  const double west = std::min(t[0], t[0] + width), east = std::max(t[0], t[0] + width);
+  const double south = std::min(t[3], t[3] + height), north = std::max(t[3], t[3] + height);
+  const double play = 0.5 * std::abs(t[1]);  // registered to the middles of pixels
+  return west >= -180.0 - play && east <= 360.0 + play && east - west >= 180.0 && south >= -90.0 - play &&
+         north <= 90.0 + play && north - south >= 90.0;
 }
 
 // To six digits, which the libraries of all machines agree on.
@@ -79,6 +90,7 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
   if (frame == nullptr) {
     const bool like_degrees = t[0] != 0.0 && std::abs(middle.x[0]) <= 360.0 &&
                               std::abs(middle.y[0]) <= 90.0 && std::abs(t[1]) < 0.1;
+    steps.like_degrees = like_a_globe(raster, t);
     steps.source =
         like_degrees ? "no unit is stated; if they are degrees, give --mm-per-px" : "no unit is stated";
   } else if (frame->IsGeographic() != 0) {

@@ -16,7 +16,8 @@ struct GroundStep {
 };
 struct GroundSteps {
   GroundStep column, row;
-  std::string source;  // StatedScale::pixel_source
+  std::string source;         // StatedScale::pixel_source
+  bool like_degrees = false;  // as StatedScale
 };
 
 // By the raster's transform and its spatial reference: a grid in degrees by the radius of its body, a

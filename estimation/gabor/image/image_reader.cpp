@@ -28,7 +28,7 @@ void require_fitting(double width, double height, const std::filesystem::path& f
 // A larger value is a mark for no data that the file does not name, or its unit is too small.
 constexpr double kLargestValue = 1e9;
 
-void require_usable(const GreyImage& plane, const std::string& name) {
+void require_usable(const GreyImage& plane, const RasterFile& raster, const std::string& name) {
   for (std::size_t i = 0; i < plane.values.size(); ++i) {
     const double value = plane.values[i];
     if (!(std::abs(value) > kLargestValue)) continue;  // true for NaN
@@ -36,7 +36,7 @@ void require_usable(const GreyImage& plane, const std::string& name) {
     throw InputError(
         fmt::format("{}: pixel ({}, {}): the value {} is beyond {:g}; name it as no data (gdal_translate "
                     "-a_nodata {}) or rescale the image",
-                    name, i % width, i / width, value, kLargestValue, value));
+                    name, i % width, i / width, value, kLargestValue, raster.stored_of(value)));
   }
 }
 
@@ -52,9 +52,9 @@ void require_known(const GreyImage& plane, const std::string& name) {
                                name, 100.0 * share));
 }
 
-// Usual marks for no data that a file may hold without naming them. One is taken for missing if it is the
+// Usual marks for no data that a file may store without naming them. One is taken for missing if it is the
 // lowest value by more than all other values differ.
-std::optional<std::string> unmark(GreyImage& plane) {
+std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
   double lowest = std::numeric_limits<double>::infinity(), next = lowest, highest = -lowest;
   for (const double v : plane.values) {
     if (std::isnan(v)) continue;
@@ -65,13 +65,26 @@ std::optional<std::string> unmark(GreyImage& plane) {
       next = std::min(next, v);
   }
   constexpr double kMarks[] = {-999.0, -9999.0, -32767.0, -32768.0, -99999.0};
-  if (std::find(std::begin(kMarks), std::end(kMarks), lowest) == std::end(kMarks)) return {};
+  constexpr double kRounded = 1e-6;  // of floats
+  const auto* const mark = std::find_if(std::begin(kMarks), std::end(kMarks), [&](double stored) {
+    return std::abs(raster.value_of(stored) - lowest) <= kRounded * std::abs(lowest);
+  });
+  if (mark == std::end(kMarks)) return {};
   if (!(next - lowest > highest - next) || next == highest) return {};
   for (double& v : plane.values) {
     if (v == lowest) v = std::numeric_limits<double>::quiet_NaN();
   }
   return fmt::format(
-      "{:g} lies far below all other values and is taken for no data, though the file names none", lowest);
+      "{:g} lies far below all other values and is taken for no data, though the file names none", *mark);
+}
+
+// A pixel without one of its colours has none of them.
+void join_missing(std::vector<GreyImage>& planes) {
+  for (std::size_t i = 0; planes.size() > 1 && i < planes.front().values.size(); ++i) {
+    const auto is_missing = [i](const GreyImage& plane) { return std::isnan(plane.values[i]); };
+    if (std::none_of(planes.begin(), planes.end(), is_missing)) continue;
+    for (GreyImage& plane : planes) plane.values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 // The image as an EXIF orientation of 1 .. 8 turns it upright: those above 4 exchange rows and columns, and
@@ -124,29 +137,33 @@ void take_mean_away(GreyImage& heights) {
   for (double& v : heights.values) v -= mean;
 }
 
-ColorImageFile read_raster(const std::filesystem::path& file, std::size_t count) {
+ColorImageFile read_raster(const std::filesystem::path& file, std::size_t count, const Progress& progress) {
   RasterFile raster(file);
   require_fitting(raster.width(), raster.height(), file);
   ColorImageFile result = empty_planes(count, static_cast<double>(raster.width()) * raster.height());
-  raster.read(into(result.planes));
+  raster.read(into(result.planes), progress);
   result.remarks = raster.remarks();
   result.scale = raster.scale();
-  const bool heights = result.scale && result.scale->heights;
   for (GreyImage& plane : result.planes) {
     plane = upright(std::move(plane), raster.orientation());
-    if (const auto mark = unmark(plane); mark && &plane == &result.planes.front())
+    if (const auto mark = unmark(plane, raster); mark && &plane == &result.planes.front())
       result.remarks.push_back(*mark);
-    require_usable(plane, file.string());
+    require_usable(plane, raster, file.string());
+  }
+  join_missing(result.planes);
+  const bool heights = result.scale && result.scale->heights;
+  for (GreyImage& plane : result.planes) {
     require_known(plane, file.string());
-    fill_missing(plane);
+    fill_missing(plane, {}, progress);
     if (heights && result.scale->pixel_width > 0.0) take_mean_away(plane);
   }
   return result;
 }
 
-ColorImageFile read_planes(const std::filesystem::path& file, std::size_t count) {
+ColorImageFile read_planes(const std::filesystem::path& file, std::size_t count,
+                           const Progress& progress = {}) {
   const std::optional<PhotoHeader> header = read_photo_header(file);
-  if (!header) return read_raster(file, count);
+  if (!header) return read_raster(file, count, progress);
   require_fitting(header->width, header->height, file);
   ColorImageFile result = empty_planes(count, static_cast<double>(header->width) * header->height);
   const double not_opaque = share_not_opaque(file, *header);
@@ -184,8 +201,8 @@ ImageFile read_grey_image(const std::filesystem::path& file) {
 
 ColorImageFile read_color_image(const std::filesystem::path& file) { return read_planes(file, 3); }
 
-ColorImageFile read_image(const std::filesystem::path& file, bool colors) {
-  return read_planes(file, colors ? 3 : 1);
+ColorImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress) {
+  return read_planes(file, colors ? 3 : 1, progress);
 }
 
 }  // namespace astrolith

@@ -8,6 +8,7 @@
 
 #include "estimation/gabor/image/grey_image.h"
 #include "estimation/gabor/image/height_map.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -52,8 +53,9 @@ ImageFile read_grey_image(const std::filesystem::path& file);
 // Reads a colour image. If the file is grey, the three planes are equal.
 ColorImageFile read_color_image(const std::filesystem::path& file);
 
-// Reads a colour image, or a grey one as the only plane.
-ColorImageFile read_image(const std::filesystem::path& file, bool colors);
+// Reads a colour image, or a grey one as the only plane. Throws WorkError where progress asks to stop, which
+// it can while a raster is read.
+ColorImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress = {});
 
 // The remark on pixels that are not opaque, by their share in (0, 1].
 std::string alpha_remark(double share);

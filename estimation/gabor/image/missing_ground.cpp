@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "numerics/errors.h"
+
 namespace astrolith {
 namespace {
 
@@ -42,7 +44,7 @@ GreyImage halved(const GreyImage& image) {
 }
 
 // Gauss-Seidel over the pixels of the list, in its order and then in reverse.
-void relax(GreyImage& image, const std::vector<std::size_t>& pixels, const Repeats& repeats, int turns) {
+void relax(GreyImage& image, const std::vector<std::size_t>& pixels, const Repeats& repeats) {
   const auto width = static_cast<std::size_t>(image.width), all = image.values.size();
   std::vector<double>& v = image.values;
   const auto smooth = [&](std::size_t i) {
@@ -56,26 +58,29 @@ void relax(GreyImage& image, const std::vector<std::size_t>& pixels, const Repea
     if (i + width < all || repeats.y) add(i + width < all ? i + width : i + width - all);
     v[i] = sum / count;
   };
-  for (int turn = 0; turn < turns; ++turn) {
-    for (const std::size_t i : pixels) smooth(i);
-    for (auto i = pixels.rbegin(); i != pixels.rend(); ++i) smooth(*i);
-  }
+  for (const std::size_t i : pixels) smooth(i);
+  for (auto i = pixels.rbegin(); i != pixels.rend(); ++i) smooth(*i);
 }
 
 // Replaces every NaN.
-void fill(GreyImage& image, const Repeats& repeats) {
+void fill(GreyImage& image, const Repeats& repeats, const Progress& progress) {
   constexpr int kTurns = 8;
+  constexpr double kNearlyRead = 0.99;
   std::vector<std::size_t> holes;
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     if (std::isnan(image.values[i])) holes.push_back(i);
   }
   if (holes.empty()) return;
   GreyImage coarse = halved(image);
-  fill(coarse, repeats);
+  fill(coarse, repeats, progress);
   const auto width = static_cast<std::size_t>(image.width);
   for (const std::size_t i : holes)
     image.values[i] = coarse.at(static_cast<int>(i % width) / 2, static_cast<int>(i / width) / 2);
-  relax(image, holes, repeats, kTurns);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    if (!report(progress, kNearlyRead, "gaps"))
+      throw WorkError("stopped while missing pixels were continued; nothing is written");
+    relax(image, holes, repeats);
+  }
 }
 
 // The missing pixels that lie in a square of 3 x 3 missing ones.
@@ -113,12 +118,12 @@ double known_variance(const GreyImage& image) {
   return sum / count;
 }
 
-void fill_missing(GreyImage& image, const Repeats& repeats) {
+void fill_missing(GreyImage& image, const Repeats& repeats, const Progress& progress) {
   const auto is_missing = [](double v) { return std::isnan(v); };
   if (std::none_of(image.values.begin(), image.values.end(), is_missing)) return;
   image.missing.resize(image.values.size());
   std::transform(image.values.begin(), image.values.end(), image.missing.begin(), is_missing);
-  fill(image, repeats);
+  fill(image, repeats, progress);
 }
 
 // The rectangles that end at a row stand on a skyline of known pixels above it; a stack holds its steps.

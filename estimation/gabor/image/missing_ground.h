@@ -2,6 +2,7 @@
 #pragma once
 
 #include "estimation/gabor/image/grey_image.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -19,7 +20,8 @@ struct Repeats {
 
 // Marks the pixels whose value is a NaN as missing and gives them the values that the others continue with:
 // coarse to fine, each missing pixel becomes the mean of its four neighbours. At least one pixel is known.
-void fill_missing(GreyImage& image, const Repeats& repeats = {});
+// Throws WorkError where progress asks to stop.
+void fill_missing(GreyImage& image, const Repeats& repeats = {}, const Progress& progress = {});
 
 // The largest rectangle without a gap, and the first of several; the whole image where none is. Missing
 // pixels are a gap where a square of 3 x 3 of them is missing: smaller holes hold what their surroundings

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <mutex>
-#include <regex>
+#include <optional>
 #include <utility>
 
 #include "estimation/gabor/image/ground_steps_internal.h"
+#include "estimation/gabor/image/height_unit_internal.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/raster_file_internal.h"
 #include "estimation/gabor/image/tiff_tags_internal.h"
@@ -22,7 +22,7 @@
 namespace astrolith {
 namespace {
 
-// The formats that are read. None runs what a file says, joins other files by name or asks a network.
+// The formats that are read. None runs what a file says. Labels name the files of their pixels.
 struct Format {
   const char* name;
   void (*register_driver)();
@@ -35,8 +35,8 @@ constexpr std::array kFormats{
     Format{"FITS", GDALRegister_FITS},       Format{"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
     Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA}};
 
-// While an object of this class lives, this thread's GDAL prints nothing, writes nothing beside its input and
-// reads no other file than those that its format names, none of them from a network.
+// While an object of this class lives, this thread's GDAL prints nothing, starts no thread that would, writes
+// nothing beside its input and asks no network.
 class QuietGdal {
  public:
   QuietGdal() {
@@ -55,6 +55,8 @@ class QuietGdal {
   CPLConfigOptionSetter no_folder_{"GDAL_DISABLE_READDIR_ON_OPEN", "TRUE", false};
   CPLConfigOptionSetter small_cache_{"GDAL_CACHEMAX", "128", false};  // MB; counts at its first use only
   CPLConfigOptionSetter no_network_{"CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false};
+  CPLConfigOptionSetter no_stream_{"CPL_VSIL_CURL_ALLOWED_EXTENSIONS", "", false};
+  CPLConfigOptionSetter one_thread_{"GDAL_NUM_THREADS", "1", false};
 };
 
 std::unique_ptr<GDALDataset> open_raster(const std::string& name) {
@@ -70,54 +72,27 @@ std::string structure(GDALMajorObject& object, const char* key) {
   return value == nullptr ? "" : value;
 }
 
-// The metres of a unit of length by its name; 0 for another unit.
-double metres_of_name(std::string unit) {
-  std::transform(unit.begin(), unit.end(), unit.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  struct Unit {
-    const char* name;
-    double metres;
-  };
-  constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937.0;
-  constexpr Unit kUnits[] = {{"m", 1.0},
-                             {"metre", 1.0},
-                             {"metres", 1.0},
-                             {"meter", 1.0},
-                             {"meters", 1.0},
-                             {"km", 1000.0},
-                             {"kilometre", 1e3},
-                             {"kilometres", 1e3},
-                             {"kilometer", 1e3},
-                             {"kilometers", 1e3},
-                             {"cm", 0.01},
-                             {"centimetre", 0.01},
-                             {"centimeter", .01},
-                             {"mm", 0.001},
-                             {"millimetre", 0.001},
-                             {"millimeter", .001},
-                             {"ft", kFoot},
-                             {"foot", kFoot},
-                             {"feet", kFoot},
-                             {"us survey foot", kSurveyFoot},
-                             {"ftus", kSurveyFoot},
-                             {"us-ft", kSurveyFoot},
-                             {"foot_us", kSurveyFoot}};
-  for (const Unit& known : kUnits) {
-    if (unit == known.name) return known.metres;
+std::string driver_of(GDALDataset& dataset) { return dataset.GetDriverName(); }
+
+// A label names the file of its pixels, and might name any other.
+void require_own_folder(GDALDataset& dataset, const std::string& name) {
+  const CPLStringList files(dataset.GetFileList());
+  const std::filesystem::path own = std::filesystem::path(name).lexically_normal();
+  for (int k = 0; k < files.Count(); ++k) {
+    const std::filesystem::path file = std::filesystem::path(files[k]).lexically_normal();
+    if (file == own || (file.parent_path() == own.parent_path() && std::filesystem::is_regular_file(file)))
+      continue;
+    throw InputError(name + ": names a file that is no plain file of its own folder; put both into one");
   }
-  return 0.0;
 }
 
-// The unit in the label of a PDS3 image, which GDAL keeps to itself; empty where it states none.
-std::string unit_of_label(const std::string& name) {
-  constexpr std::size_t kLargestLabel = std::size_t{1} << 16;
-  std::string label(kLargestLabel, '\0');
-  std::ifstream in(name, std::ios::binary);
-  in.read(label.data(), static_cast<std::streamsize>(label.size()));
-  label.resize(static_cast<std::size_t>(in.gcount()));
-  static const std::regex unit("[\\r\\n] *UNIT *= *[\"']?([A-Za-z]+)");
-  std::smatch found;
-  return std::regex_search(label, found, unit) ? found[1].str() : "";
+// The label beside a file of pixels without one; empty where none is.
+std::string label_beside(const std::filesystem::path& file) {
+  for (const char* extension : {".lbl", ".LBL", ".xml", ".XML"}) {
+    const std::filesystem::path label = std::filesystem::path(file).replace_extension(extension);
+    if (label != file && std::filesystem::is_regular_file(label)) return label.string();
+  }
+  return "";
 }
 
 }  // namespace
@@ -130,11 +105,13 @@ struct RasterFile::Bands {
   const GDALColorTable* palette = nullptr;
   bool white_is_zero = false;
   bool signed_bytes = false;
-  bool isis_marks = false;  // 16-bit integers below -32752 are marks of ISIS
-  double factor = 1.0, offset = 0.0;
-  double opaque = 1.0;     // the alpha of an opaque pixel
-  std::string unit;        // of the values, as the file spells it; empty: none
-  bool as_stated = false;  // the values are the file's own, and not shares of a full scale
+  bool isis_marks = false;            // 16-bit integers below -32752 are marks of ISIS
+  double factor = 1.0, offset = 0.0;  // of the numbers that GDAL gives
+  std::optional<double> blank;        // what GDAL gives for no data and masks not
+  bool masked = true;                 // GDAL's mask counts
+  double opaque = 1.0;                // the alpha of an opaque pixel
+  std::string unit;                   // of the values, as the file spells it; empty: none
+  bool as_stated = false;             // the values are the file's own, and not shares of a full scale
   bool fourth_unused = false;
   std::size_t not_opaque = 0;
 
@@ -153,6 +130,27 @@ double full_scale(GDALRasterBand& band) {
   const int stored =
       bits.empty() ? GDALGetDataTypeSizeBits(band.GetRasterDataType()) : std::atoi(bits.c_str());
   return std::ldexp(1.0, std::clamp(stored, 1, 64)) - 1.0;
+}
+
+double block_pixels(GDALRasterBand& band) {
+  int width = 0, height = 0;
+  band.GetBlockSize(&width, &height);
+  return static_cast<double>(width) * height;
+}
+
+// The bytes of so many pixels of this band and all others.
+double bytes_of_all(GDALRasterBand& band, double pixels) {
+  return pixels * band.GetDataset()->GetRasterCount() * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+}
+
+// Rows are read one by one, and each block is decoded once only where a row of blocks has room in the cache.
+void hold_row_of_blocks(GDALRasterBand& band) {
+  int width = 0, height = 0;
+  band.GetBlockSize(&width, &height);
+  const double across = std::ceil(static_cast<double>(band.GetXSize()) / width);
+  constexpr double kMasks = 2.0;
+  const auto bytes = static_cast<GIntBig>(kMasks * bytes_of_all(band, across * block_pixels(band)));
+  if (GDALGetCacheMax64() < bytes) GDALSetCacheMax64(bytes);
 }
 
 bool read_row(GDALRasterBand& band, int y, GDALDataType type, void* row) {
@@ -180,11 +178,13 @@ RasterFile::RasterFile(const std::filesystem::path& file)
   const QuietGdal quiet;
   dataset_ = open_raster(name_);
   if (dataset_ == nullptr) {
+    const std::string label = label_beside(name_);
+    if (!label.empty()) fail("its first bytes are not those of a picture or height map; give " + label);
     fail(
         "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
-        "it "
-        "as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
+        "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
   }
+  require_own_folder(*dataset_, name_);
   find_bands();
   find_scale();
 }
@@ -208,26 +208,50 @@ void RasterFile::find_bands() {
   }
   for (int k = 1; k <= std::min(count, 3); ++k) b.values.push_back(dataset_->GetRasterBand(k));
   for (GDALRasterBand* band : b.values) {
-    int width = 0, height = 0;
-    band->GetBlockSize(&width, &height);
+    constexpr double kSmallBlock = 1 << 22;
+    const double image = bytes_of_all(*band, 1.0 * width() * height());
     if (GDALDataTypeIsComplex(band->GetRasterDataType()) != 0)
       fail("its pixels are complex numbers; save their magnitude as a GeoTIFF of 32-bit floats");
-    if (static_cast<double>(width) * height > kLargestImagePixels)
-      fail("its tiles are too large; save it again with smaller ones");
+    if (bytes_of_all(*band, block_pixels(*band)) > std::max(4.0 * image, kSmallBlock))
+      fail("its tiles are much larger than the image; save it again with smaller ones");
   }
   b.white_is_zero = structure(*dataset_, "MINISWHITE") == "YES";
   const bool indices = count == 1 && GDALGetDataTypeSizeBits(first.GetRasterDataType()) <= 16;
   b.palette = indices && !b.white_is_zero ? first.GetColorTable() : nullptr;
   b.signed_bytes = structure(first, "PIXELTYPE") == "SIGNEDBYTE";
-  b.isis_marks =
-      std::string(dataset_->GetDriverName()).rfind("ISIS", 0) == 0 && first.GetRasterDataType() == GDT_Int16;
+  const std::string driver = driver_of(*dataset_);
+  b.isis_marks = driver.rfind("ISIS", 0) == 0 && first.GetRasterDataType() == GDT_Int16;
   b.unit = first.GetUnitType();
-  if (b.unit.empty() && std::string(dataset_->GetDriverName()) == "PDS") b.unit = unit_of_label(name_);
   b.factor = first.GetScale();
   b.offset = first.GetOffset();
+  if (driver == "PDS") read_label(first);
+  if (driver == "FITS") read_fits(first);
   b.as_stated =
       is_signed_or_float(first) || b.signed_bytes || b.factor != 1.0 || b.offset != 0.0 || !b.unit.empty();
   if (!b.as_stated) b.factor = 1.0 / full_scale(first);
+}
+
+void RasterFile::read_label(GDALRasterBand& first) {
+  if (bands_->unit.empty()) bands_->unit = value_in_label(name_, "UNIT");
+  // Where the label names no mark, GDAL takes 0 for one.
+  bands_->masked = is_signed_or_float(first) || !value_in_label(name_, "MISSING_CONSTANT").empty() ||
+                   !value_in_label(name_, "MISSING").empty();
+}
+
+// FITS gives scaled numbers, cut to integers where integers are stored, and the mark for no data as stored.
+void RasterFile::read_fits(GDALRasterBand& first) {
+  Bands& b = *bands_;
+  const double factor = std::exchange(b.factor, 1.0), offset = std::exchange(b.offset, 0.0);
+  const bool integers = GDALDataTypeIsFloating(first.GetRasterDataType()) == 0;
+  const bool unsigned_ones = integers && !is_signed_or_float(first);  // stored from below 0
+  if (integers && (factor != 1.0 || (offset != 0.0 && !unsigned_ones)))
+    fail("holds scaled integers; save it as FITS or GeoTIFF of 32-bit floats");
+  b.masked = false;
+  int known = 0;
+  const double blank = first.GetNoDataValue(&known);
+  if (known != 0) b.blank = unsigned_ones && blank < 0.0 ? blank + 0.5 * (full_scale(first) + 1.0) : blank;
+  const char* unit = dataset_->GetMetadataItem("BUNIT");
+  if (b.unit.empty() && unit != nullptr) b.unit = unit;
 }
 
 void RasterFile::find_scale() {
@@ -236,12 +260,13 @@ void RasterFile::find_scale() {
   if (steps && steps->column.length() > 0.0 && steps->row.length() > 0.0) {
     scale.pixel_width = steps->column.length();
     scale.pixel_height = steps->row.length();
+    scale.like_degrees = steps->like_degrees;
     const double shear = steps->column.east * steps->row.east + steps->column.north * steps->row.north;
     scale.sheared = std::abs(shear) > 0.01 * scale.pixel_width * scale.pixel_height;
     scale.pixel_source = steps->source;
   }
   Bands& b = *bands_;
-  const double metres = metres_of_name(b.unit);
+  const double metres = metres_of_unit(b.unit);
   const bool many_levels = b.as_stated ? b.values.front()->GetRasterDataType() != GDT_Byte || b.signed_bytes
                                        : full_scale(*b.values.front()) >= 65535.0;
   const bool one = b.channels() == 1 && !b.white_is_zero;
@@ -252,6 +277,7 @@ void RasterFile::find_scale() {
     if (metres > 0.0) {
       b.factor *= metres;
       b.offset *= metres;
+      if (b.unit.find_first_of(" (,") != std::string::npos) scale.height_source = "unit \"" + b.unit + "\"";
     } else {
       scale.height_source = "no unit is stated";
     }
@@ -268,6 +294,10 @@ std::vector<std::string> RasterFile::remarks() const {
   if (bands_->fourth_unused) remarks.emplace_back("only the first three of four bands used");
   if (dataset_->GetMetadataItem("SUBDATASET_2_NAME", "SUBDATASETS") != nullptr)
     remarks.emplace_back("only the first of several pages used");
+  if (bands_->channels() == 1 && !bands_->unit.empty() && !(scale_ && scale_->heights)) {
+    remarks.push_back("its unit \"" + bands_->unit +
+                      "\" is no length, and its values are taken as brightness");
+  }
   return remarks;
 }
 
@@ -278,20 +308,33 @@ constexpr double kBeyondAll = 1e30;  // marks of ISIS and others for no data are
 
 }  // namespace
 
-void RasterFile::read(const TakeRow& take) {
+double RasterFile::value_of(double stored) const {
+  const Bands& b = *bands_;
+  return b.factor * stored + b.offset;
+}
+
+double RasterFile::stored_of(double value) const {
+  const Bands& b = *bands_;
+  return (value - b.offset) / b.factor;
+}
+
+void RasterFile::read(const TakeRow& take, const Progress& progress) {
   const QuietGdal quiet;
   Bands& b = *bands_;
+  hold_row_of_blocks(*b.values.front());
   const auto columns = static_cast<std::size_t>(width());
   const auto channels = static_cast<std::size_t>(b.channels());
   std::vector<double> stored(columns), row(columns * channels), alpha(b.alpha != nullptr ? columns : 0);
   std::vector<std::uint8_t> valid(columns), band_valid(columns);
   b.not_opaque = 0;
   for (int y = 0; y < height(); ++y) {
+    if (!report(progress, static_cast<double>(y) / height(), "read"))
+      throw WorkError(name_ + ": stopped; nothing is written");
     bool whole = b.alpha == nullptr || read_row(*b.alpha, y, GDT_Float64, alpha.data());
     std::fill(valid.begin(), valid.end(), std::uint8_t{0});
     for (std::size_t k = 0; whole && k < b.values.size(); ++k) {
       GDALRasterBand& band = *b.values[k];
-      const bool all = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_ALPHA)) != 0;
+      const bool all = !b.masked || (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_ALPHA)) != 0;
       whole = read_row(band, y, GDT_Float64, stored.data()) &&
               (all || read_row(*band.GetMaskBand(), y, GDT_Byte, band_valid.data()));
       for (std::size_t x = 0; x < columns; ++x) {
@@ -305,8 +348,9 @@ void RasterFile::read(const TakeRow& take) {
           continue;
         }
         if (b.signed_bytes && v > 127.0) v -= 256.0;
-        const bool mark = !(std::abs(v) < kBeyondAll) || (b.isis_marks && v < -32752.0);
-        v = b.factor * v + b.offset;
+        const bool mark =
+            !(std::abs(v) < kBeyondAll) || (b.isis_marks && v < -32752.0) || (b.blank && v == *b.blank);
+        v = value_of(v);
         row[x * channels + k] = mark ? kMissing : b.white_is_zero && !b.as_stated ? 1.0 - v : v;
       }
     }
@@ -317,7 +361,7 @@ void RasterFile::read(const TakeRow& take) {
       const bool erased = !(opacity > 0.0) && (b.premultiplied || (scale_ && scale_->heights));
       for (std::size_t k = 0; k < channels; ++k) {
         double& v = row[x * channels + k];
-        if (b.premultiplied && opacity > 0.0) v = std::min(1.0, v / opacity);
+        if (b.premultiplied && !b.as_stated && opacity > 0.0) v = std::min(v / opacity, 1.0);
         if (!valid[x] || erased) v = kMissing;
       }
     }

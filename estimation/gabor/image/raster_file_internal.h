@@ -9,8 +9,10 @@
 
 #include "estimation/gabor/image/height_map.h"
 #include "estimation/gabor/image/photo_codec_internal.h"
+#include "numerics/progress.h"
 
 class GDALDataset;
+class GDALRasterBand;
 
 namespace astrolith {
 
@@ -32,14 +34,20 @@ class RasterFile {
 
   // Gives the rows from the top as stored. Heights are metres where StatedScale says so. Floats, signed
   // integers and values with a scale of their own are as the file states them, and of others the full scale
-  // is
-  // 1. A missing pixel is a NaN: one that the file calls no data or masks, one that is not finite or beyond
-  // 1e30, and one whose colours an alpha of 0 has erased. Throws InputError for damaged files.
-  void read(const TakeRow& take);
+  // is 1. A missing pixel is a NaN: one that the file calls no data or masks, one that is not finite or
+  // beyond 1e30, and one whose colours an alpha of 0 has erased. Throws InputError for damaged files, and
+  // WorkError where progress asks to stop.
+  void read(const TakeRow& take, const Progress& progress = {});
+
+  // What read() makes of a stored number of one band, and the stored number of such a value.
+  double value_of(double stored) const;
+  double stored_of(double value) const;
 
  private:
   struct Bands;
   void find_bands();
+  void read_label(GDALRasterBand& first);
+  void read_fits(GDALRasterBand& first);
   void find_scale();
   [[noreturn]] void fail(const std::string& what) const;
 

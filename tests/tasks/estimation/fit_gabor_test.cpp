@@ -245,6 +245,15 @@ TEST_F(FitGabor, OptionsWinOverTheFile) {
   EXPECT_DOUBLE_EQ(layer.height_rms, 5.0);
 }
 
+TEST_F(FitGabor, AGlobeWithoutAFrameMayBeInDegrees) {
+  std::string grid = "ncols 72\nnrows 36\nxllcorner 0\nyllcorner -90\ncellsize 5\n";
+  for (int k = 0; k < 72 * 36; ++k)
+    grid += std::to_string(unit_float(hash_cell(5u, k, 0, 0))) + (k % 72 == 71 ? "\n" : " ");
+  write("globe.asc", grid);
+  refuse("globe.asc -o rock.json", "pixels of 5 may be degrees");
+  succeed("globe.asc -o rock.json --mm-per-px 1e6");
+}
+
 TEST_F(FitGabor, MissingGroundIsLeftOut) {
   write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "whole.tif");
   write_geotiff(heights(7), 64, 64, 2.0, "", folder_ / "dem.tif");

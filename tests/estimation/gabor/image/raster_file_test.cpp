@@ -1,9 +1,11 @@
 // Rasters that GDAL reads: what their files state about values, ground and gaps.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/missing_ground.h"
+#include "numerics/errors.h"
 #include "synthesis/picture/image_file.h"
 #include "tests/estimation/gabor/image/raster_inputs.h"
 #include "tests/support/refusal.h"
@@ -242,7 +244,7 @@ TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
   for (const char* format : {"ISIS3", "PDS4", "VICAR", "ENVI", "FITS", "EHdr", "HFA", "AAIGrid"}) {
     const fs::path file = folder / (std::string(format) + (std::string(format) == "PDS4" ? ".xml" : ".img"));
     write_raster(file, {format, GDT_Float32, 4, 3}, heights);
-    if (!fs::exists(file)) continue;  // the format is not built in
+    ASSERT_TRUE(fs::exists(file)) << format;
     const GreyImage image = read_grey_image(file).image;
     ASSERT_EQ(image.values.size(), 12u) << format;
     EXPECT_NEAR(image.values[5] - image.values[0], 5.0, 1e-6) << format;
@@ -250,19 +252,186 @@ TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
   }
 }
 
+// A PDS3 image of 3 x 2 pixels, 0 to 5, of big-endian integers of so many bits, with more lines of its label.
+std::string pds3(int bits, const std::string& lines, const std::string& image = "3") {
+  std::string file =
+      "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 512\r\nFILE_RECORDS = 3\r\n"
+      "LABEL_RECORDS = 2\r\n^IMAGE = " +
+      image + "\r\nOBJECT = IMAGE\r\n LINES = 2\r\n LINE_SAMPLES = 3\r\n SAMPLE_TYPE = " +
+      (bits == 8 ? "UNSIGNED_INTEGER" : "MSB_INTEGER") + "\r\n SAMPLE_BITS = " + std::to_string(bits) +
+      "\r\n" + lines + "END_OBJECT = IMAGE\r\nEND\r\n";
+  file.resize(1536, '\0');
+  const auto size = static_cast<std::size_t>(bits / 8);
+  for (std::size_t i = 0; i < 6; ++i) file[1024 + size * i + size - 1] = static_cast<char>(i);
+  return file;
+}
+
 // GDAL keeps the unit of a PDS3 label to itself.
 TEST_F(RasterFileTest, ThePds3LabelHasTheUnit) {
-  std::string file =
-      "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 512\r\nFILE_RECORDS = 2\r\n"
-      "LABEL_RECORDS = 1\r\n^IMAGE = 2\r\nOBJECT = IMAGE\r\n LINES = 2\r\n LINE_SAMPLES = 3\r\n"
-      " SAMPLE_TYPE = MSB_INTEGER\r\n SAMPLE_BITS = 16\r\n UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n"
-      "END_OBJECT = IMAGE\r\nEND\r\n";
-  file.resize(1024, '\0');
-  for (std::size_t i = 0; i < 6; ++i) file[512 + 2 * i + 1] = static_cast<char>(i);
-  const ImageFile map = read_grey_image(folder.write("dem.img", file));
+  const auto map_of = [&](const std::string& lines) {
+    return read_grey_image(folder.write("dem.img", pds3(16, lines)));
+  };
+  const ImageFile map = map_of(" UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n");
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
   EXPECT_NEAR(map.image.values[5] - map.image.values[0], 2500.0, 1e-9);
+  EXPECT_NEAR(map_of(" UNIT = METER\r\n").image.values[5], 5.0, 1e-9);
+  EXPECT_FALSE(map_of(" UNIT = \"KM/S\"\r\n").scale.has_value());
+}
+
+TEST_F(RasterFileTest, BlanksBehindALabelTakeNoStack) {
+  std::string file = pds3(16, "");
+  file.replace(file.size() - 400, 1, 70000, ' ');
+  file[file.size() - 500] = '\n';
+  EXPECT_EQ(read_grey_image(folder.write("dem.img", file)).image.values.size(), 6u);
+}
+
+TEST_F(RasterFileTest, BlackIsMissingWhereThePds3LabelSaysSo) {
+  const auto missing = [&](const std::string& lines) {
+    return missing_share(read_grey_image(folder.write("p.img", pds3(8, lines))).image);
+  };
+  EXPECT_EQ(missing(""), 0.0);
+  EXPECT_NEAR(missing(" MISSING_CONSTANT = 0\r\n"), 1.0 / 6.0, 1e-12);
+}
+
+TEST_F(RasterFileTest, LabelsNameNoFilesOfOtherFolders) {
+  const std::string pixels(512, '\1');
+  fs::create_directory(folder / "other");
+  folder.write("other/p.img", pixels);
+  folder.write("p.img", pixels);
+  const auto error = [&](const std::string& image) {
+    return error_of(folder.write("p.lbl", pds3(8, "", "(\"" + image + "\", 1)")));
+  };
+  EXPECT_EQ(error("p.img"), "no error");
+  EXPECT_TRUE(has(error("other/p.img"), "own folder"));
+  folder.write("other/up.lbl", pds3(8, "", "(\"../p.img\", 1)"));
+  EXPECT_TRUE(has(error_of(folder / "other/up.lbl"), "own folder"));
+  EXPECT_TRUE(has(error_of(folder / "p.img"), "give " + (folder / "p.lbl").string()));
+}
+
+// A FITS file of 3 x 2 stored numbers of 16 bits.
+std::string fits(const std::vector<int>& stored, const std::vector<std::string>& cards) {
+  std::string file;
+  const auto add = [&](std::string card) {
+    card.resize(80, ' ');
+    file += card;
+  };
+  for (const char* card :
+       {"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    2",
+        "NAXIS1  =                    3", "NAXIS2  =                    2"})
+    add(card);
+  for (const std::string& card : cards) add(card);
+  add("END");
+  file.resize(2880, ' ');
+  for (const int number : stored) {
+    file += static_cast<char>(number >> 8 & 255);
+    file += static_cast<char>(number & 255);
+  }
+  file.resize(5760, '\0');
+  return file;
+}
+
+TEST_F(RasterFileTest, FitsHasItsUnitAndItsBlanks) {
+  const auto map_of = [&](const std::vector<int>& stored, const std::vector<std::string>& cards) {
+    return read_grey_image(folder.write("m.fits", fits(stored, cards)));
+  };
+  const ImageFile map =
+      map_of({-32768, 1, 2, 3, 4, 5}, {"BLANK   =               -32768", "BUNIT   = 'km      '"});
+  ASSERT_TRUE(map.scale.has_value());
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  EXPECT_DOUBLE_EQ(*std::max_element(map.image.values.begin(), map.image.values.end()), 5000.0);
+  // Unsigned numbers are stored from -32768.
+  const std::string zero = "BZERO   =              32768.0";
+  const ImageFile words = map_of({32767, -32768, 0, 0, 0, 0}, {zero});
+  const auto [black, white] = std::minmax_element(words.image.values.begin(), words.image.values.end());
+  EXPECT_DOUBLE_EQ(*black, 0.0);
+  EXPECT_DOUBLE_EQ(*white, 1.0);
+  const ImageFile gap = map_of({-32768, 1, 2, 3, 4, 5}, {zero, "BLANK   =               -32768"});
+  EXPECT_NEAR(missing_share(gap.image), 1.0 / 6.0, 1e-12);
+  // GDAL would cut off fractions.
+  folder.write("half.fits", fits({0, 1, 2, 3, 4, 5}, {"BSCALE  =                  0.5"}));
+  EXPECT_TRUE(has(error_of(folder / "half.fits"), "scaled integers"));
+}
+
+TEST_F(RasterFileTest, MarksCountAsStored) {
+  write_raster(folder / "s.tif", {"GTiff", GDT_Int16}, {-9999, 10, 11, 12, 11, 10}, [](GDALDataset& raster) {
+    raster.GetRasterBand(1)->SetScale(0.25);
+    raster.GetRasterBand(1)->SetOffset(1000.0);
+    raster.GetRasterBand(1)->SetUnitType("metres above the ellipsoid");
+  });
+  const ImageFile map = read_grey_image(folder / "s.tif");
+  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  ASSERT_EQ(map.remarks.size(), 1u);
+  EXPECT_TRUE(has(map.remarks[0], "-9999 lies"));
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_EQ(map.scale->height_source, "unit \"metres above the ellipsoid\"");
+  write_raster(folder / "far.tif", {"GTiff", GDT_Int32}, {-2000000000, 10, 11, 12, 11, 10},
+               [](GDALDataset& raster) { raster.GetRasterBand(1)->SetScale(10.0); });
+  EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata -2000000000)"));
+}
+
+TEST_F(RasterFileTest, AnUnknownUnitIsSaid) {
+  const auto unit = [](const char* name) {
+    return [name](GDALDataset& raster) {
+      place(raster, 0.5);
+      raster.GetRasterBand(1)->SetUnitType(name);
+    };
+  };
+  EXPECT_TRUE(read({"GTiff", GDT_Float32}, kSteps, unit("m (MSL)")).scale->heights);
+  for (const char* name : {"m s-1", "m/s", "parsec"}) {
+    const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, unit(name));
+    EXPECT_FALSE(map.scale->heights) << name;
+    ASSERT_EQ(map.remarks.size(), 1u);
+    EXPECT_TRUE(has(map.remarks[0], std::string("\"") + name + "\" is no length")) << map.remarks[0];
+  }
+}
+
+TEST_F(RasterFileTest, APixelWithoutOneColourIsMissing) {
+  std::vector<double> values(18, 0.5);
+  values[7] = std::numeric_limits<double>::quiet_NaN();
+  write_raster(folder / "c.tif", {"GTiff", GDT_Float32, 3, 2, 3, {"PHOTOMETRIC=RGB"}}, values);
+  for (const GreyImage& plane : read_color_image(folder / "c.tif").planes)
+    EXPECT_EQ(plane.missing, (std::vector<bool>{false, true, false, false, false, false}));
+}
+
+TEST_F(RasterFileTest, HeightsUnderPremultipliedAlphaAreNotDivided) {
+  std::vector<double> values{-3, 20, 30, 40, 50, 60, 1, 1, 0.5, 1, 1, 1};
+  write_raster(folder / "h.tif", {"GTiff", GDT_Float32, 3, 2, 2, {"ALPHA=PREMULTIPLIED"}}, values);
+  expect_values(read_grey_image(folder / "h.tif").image, {-3, 20, 30, 40, 50, 60});
+}
+
+TEST_F(RasterFileTest, OneHugeTileIsRefused) {
+  write_raster(folder / "t.tif",
+               {"GTiff",
+                GDT_Float64,
+                64,
+                64,
+                1,
+                {"TILED=YES", "BLOCKXSIZE=2048", "BLOCKYSIZE=2048", "SPARSE_OK=TRUE"}},
+               std::vector<double>(4096, 1.0));
+  EXPECT_TRUE(has(error_of(folder / "t.tif"), "tiles are much larger"));
+}
+
+TEST_F(RasterFileTest, AGlobeInDegreesNeedsAFrame) {
+  const auto like_degrees = [&](double west, double side) {
+    return read({"GTiff", GDT_Float32, 36, 18}, std::vector<double>(648, 1.0),
+                [&](GDALDataset& raster) {
+                  std::array<double, 6> transform{west, side, 0.0, 90.0, 0.0, -side};
+                  raster.SetGeoTransform(transform.data());
+                })
+        .scale->like_degrees;
+  };
+  EXPECT_TRUE(like_degrees(0.0, 10.0));
+  EXPECT_TRUE(like_degrees(-180.0, 10.0));
+  EXPECT_FALSE(like_degrees(0.0, 1.0));
+  EXPECT_FALSE(like_degrees(0.0, 20.0));
+}
+
+TEST_F(RasterFileTest, ReadingHeedsAStop) {
+  write_raster(folder / "h.tif", {}, kSteps);
+  EXPECT_THROW(read_image(folder / "h.tif", false, [](double, std::string_view) { return false; }),
+               WorkError);
 }
 
 TEST_F(RasterFileTest, JpegOf2000IsRead) {
