@@ -16,6 +16,9 @@ namespace astrolith {
 namespace {
 
 constexpr double kAlike = 0.02;
+// Alike pixels differ by less than neighbouring ones, within what chance adds to noise; where a period is
+// there just twice, by much less: two hills of nearly one form differ by a fifth.
+constexpr double kOfNeighbours = 1.1, kOfNeighboursOnce = 0.125;
 constexpr double kRounding = 1e-9;  // of the mean square: what the transforms leave
 
 // What all rows have together: the sums over the pixels of the products of values a distance apart, and of
@@ -71,9 +74,11 @@ int least_period(const std::vector<double>& differences, std::size_t n) {
     largest = std::max(largest, differences[p - 1]);
     if (!(largest > 0.0) || differences[p] > differences[p - 1] || differences[p] > differences[p + 1])
       continue;
+    const bool once = 2 * p >= differences.size();
+    const double most =
+        std::min(kAlike * largest, (once ? kOfNeighboursOnce : kOfNeighbours) * differences[1]);
     bool alike = true;
-    for (std::size_t k = p; alike && k < differences.size(); k += p)
-      alike = differences[k] <= kAlike * largest;
+    for (std::size_t k = p; alike && k < differences.size(); k += p) alike = differences[k] <= most;
     if (alike) return static_cast<int>(p);
   }
   return 0;

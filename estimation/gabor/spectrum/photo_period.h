@@ -16,9 +16,10 @@ struct PhotoPeriod {
 
 // Along an axis a photo of n pixels has the period p <= n / 2 if pixels at all multiples of p, up to 3 n / 4,
 // are as good as alike, and others are not. Pixels are alike if the mean square of their differences is at
-// most a fiftieth of the largest at lesser distances. This is more than what JPEG and rounding add. A photo
-// that does not change along an axis has no period there. All planes have one size. Throws WorkError when
-// progress asks to stop.
+// most a fiftieth of the largest at lesser distances, which is more than what JPEG and rounding add, and
+// about that of neighbouring pixels; an eighth of it where no second multiple is compared, as two hills of
+// nearly one form are no tiles. A photo that does not change along an axis has no period there. All planes
+// have one size. Throws WorkError when progress asks to stop.
 PhotoPeriod find_period(const std::vector<GreyImage>& planes, const Progress& progress = {});
 
 // A part of the planes that holds one period, or as many as make `least` pixels. It begins where its border

@@ -69,6 +69,19 @@ TEST(PhotoPeriod, IsNoneWhereNothingRepeats) {
   expect_period(image_of(64, 64, [](int x, int y) { return x == 20 && y == 30 ? 1.0 : 0.0; }), 0, 0);
 }
 
+// Two ridges of nearly one form, as heights on uneven ground, are no tiles.
+TEST(PhotoPeriod, IsNoneOfTwoAlikeRidges) {
+  const auto ridge = [](double x, double width) { return std::exp(-0.5 * (x / width) * (x / width)); };
+  for (const double noise : {0.0, 0.01, 0.03}) {
+    expect_period(image_of(128, 96,
+                           [&](int x, int y) {
+                             return ridge(x - 35, 9) + 0.95 * ridge(x - 93, 10) +
+                                    noise * random_value(x, y, 7);
+                           }),
+                  0, 0);
+  }
+}
+
 TEST(PhotoPeriod, OneIsCutOutWhereItsBorderIsCalm) {
   // A bright pixel in the corner of each tile.
   const GreyImage comb =
