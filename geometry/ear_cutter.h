@@ -13,9 +13,9 @@
 
 namespace astrolith {
 
-// More corners of a polygon that is not convex are refused by readers: the time grows with their square, to
-// some .4 s.
-inline constexpr std::size_t kMostConcaveCorners = 10000;
+// Readers refuse files with more: the sum of the squares of the corners of polygons that are not convex. The
+// time grows with it, to some 3 s.
+inline constexpr std::size_t kMostSquaredCorners = 1'000'000'000;
 
 // Whether the triangles of a fan around the first corner lie side by side, seen along the polygon's normal
 // (Newell's). True for convex polygons, for corners along one line, and for polygons without an area. `fan`

@@ -53,8 +53,8 @@ void append_quad(const std::vector<Vec3d>& points, const std::array<std::uint32_
 class PolygonFans {
  public:
   void append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles);
-  // Throws InputError for a polygon that is not convex and has more than kMostConcaveCorners. Passes over
-  // polygons with indices out of range.
+  // Throws InputError where polygons that are not convex have more corners than kMostSquaredCorners allows.
+  // Passes over polygons with indices out of range.
   void cut_concave(const MeshFile& file, TriangleMesh& mesh) const;
 
  private:

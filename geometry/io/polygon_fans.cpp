@@ -27,16 +27,21 @@ void PolygonFans::cut_concave(const MeshFile& file, TriangleMesh& mesh) const {
   const auto in_range = [&](const Triangle& t) {
     return std::max({t[0], t[1], t[2]}) < mesh.vertices.size();
   };
+  std::vector<std::span<Triangle>> concave;
+  std::size_t squares = 0;
   for (const auto& [first, count] : fans_) {
     const auto fan = std::span(mesh.triangles).subspan(first, count);
     if (!std::all_of(fan.begin(), fan.end(), in_range) || fan_covers_polygon(fan, mesh.vertices)) continue;
-    if (count + 2 > kMostConcaveCorners) {
+    concave.push_back(fan);
+    squares += (count + 2) * (count + 2);
+    if (squares > kMostSquaredCorners) {
       file.fail("triangle " + std::to_string(first + 1),
-                "a face of " + std::to_string(count + 2) + " corners is not convex",
-                "cut it into faces of at most " + std::to_string(kMostConcaveCorners) + " corners");
+                "a face of " + std::to_string(count + 2) + " corners is not convex, which takes too long " +
+                    (concave.size() > 1 ? "with those before it" : "to cut"),
+                "cut such faces into triangles");
     }
-    cut_ears(fan, mesh.vertices);
   }
+  for (const std::span<Triangle> fan : concave) cut_ears(fan, mesh.vertices);
 }
 
 }  // namespace astrolith
