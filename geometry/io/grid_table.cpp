@@ -61,6 +61,7 @@ double pole_radius(const std::vector<Row>& rows, double sign, const double* ring
 // Fills the radii of the rows between the poles. False where a place is missing or stands there twice.
 bool fill(Grid& grid, const std::vector<Row>& rows, double seam) {
   const std::size_t around = grid.longitudes.size();
+  if (rows.size() < grid.latitudes.size() * around) return false;  // before memory for places is taken
   grid.radii.assign(grid.latitudes.size() * around, 0.0);
   std::size_t filled = 0;
   const auto place = [](const std::vector<double>& values, double value) {
@@ -133,7 +134,7 @@ std::vector<Row> named_rows(NamedTable& table, const TableLayout& layout) {
     if (table.width() != layout.width) {
       table.fail("has " + std::to_string(table.width()) + " columns where " + std::to_string(layout.width) +
                      " are named",
-                 "complete the line");
+                 "complete the line or correct the names");
     }
     rows.push_back({degrees * table.number(layout.columns[0], "latitude"),
                     (layout.west ? -degrees : degrees) * table.number(layout.columns[1], "longitude"),

@@ -70,9 +70,10 @@ struct StatedUnit {
 };
 
 // The unit that a comment states, such as "length unit: km" of write_mesh() (any word of up to 8 letters) or
-// "# Units: meters", or the names of a table's columns, or a PDS3 label in front; else a label beside the
-// file, of the same name with .lbl or .xml, that names the file (PDS3's UNIT, PDS4's <unit>). Looks at the
-// first 4,096 bytes of a mesh, and the first 256 kB of a label. Never throws for a file that cannot be read.
+// "# Units: meters" (or "Units:" and any word of up to 20), or the names of a table's columns, or a PDS3
+// label in front; else a label beside the file, of the same name with .lbl or .xml, that names the file
+// (PDS3's UNIT, PDS4's <unit>). Looks at the first 4,096 bytes of a mesh, and the first 256 kB of a label.
+// Never throws for a file that cannot be read.
 StatedUnit stated_unit(const std::filesystem::path& file);
 inline std::string stated_length_unit(const std::filesystem::path& file) { return stated_unit(file).unit; }
 

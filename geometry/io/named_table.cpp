@@ -20,9 +20,13 @@ std::string short_unit(std::string_view word) {
                                                                              {"kilometre", "km"},
                                                                              {"kilometres", "km"},
                                                                              {"cm", "cm"},
+                                                                             {"centimetre", "cm"},
+                                                                             {"centimetres", "cm"},
                                                                              {"centimeter", "cm"},
                                                                              {"centimeters", "cm"},
                                                                              {"mm", "mm"},
+                                                                             {"millimetre", "mm"},
+                                                                             {"millimetres", "mm"},
                                                                              {"millimeter", "mm"},
                                                                              {"millimeters", "mm"},
                                                                              {"deg", "deg"},
@@ -32,6 +36,16 @@ std::string short_unit(std::string_view word) {
                                                                              {"ft", "ft"},
                                                                              {"feet", "ft"},
                                                                              {"mi", "mi"},
+                                                                             {"in", "in"},
+                                                                             {"inch", "in"},
+                                                                             {"inches", "in"},
+                                                                             {"um", "um"},
+                                                                             {"micron", "um"},
+                                                                             {"microns", "um"},
+                                                                             {"micrometer", "um"},
+                                                                             {"micrometers", "um"},
+                                                                             {"micrometre", "um"},
+                                                                             {"micrometres", "um"},
                                                                              {"au", "au"},
                                                                              {"rad", "rad"},
                                                                              {"radian", "rad"},
@@ -87,9 +101,13 @@ struct ColumnName {
 ColumnName parse_name(std::string_view field) {
   const std::string name = lower_case(field);
   if (const std::size_t open = name.find_first_of("(["); open != name.npos && open > 0) {
-    const std::string inside = name.substr(open + 1, name.find_first_of(")]", open) - open - 1);
-    const std::string unit = short_unit(trimmed(inside));
-    return {std::string(trimmed(std::string_view(name).substr(0, open))), unit.empty() ? inside : unit};
+    std::string_view words = trimmed(std::string_view(name).substr(open));
+    // Words behind the brackets are of the unit too: "lon (deg) west".
+    if (const std::size_t close = words.find_first_of(")]"); close >= words.size() - 1)
+      words = trimmed(words.substr(1, close - 1));
+    const std::string unit = short_unit(words);
+    return {std::string(trimmed(std::string_view(name).substr(0, open))),
+            unit.empty() ? std::string(words) : unit};
   }
   const std::size_t cut = name.find_last_of("_/ .");
   if (cut != name.npos && cut > 0) {
@@ -104,13 +122,16 @@ std::vector<std::string> names_in(std::string_view line) {
   std::vector<std::string_view> fields;
   split_fields(line, fields);
   std::vector<std::string> names;
+  bool in_brackets = false;
   for (const std::string_view field : fields) {
-    const bool is_unit = field.starts_with('(') || field.starts_with('[');
+    const bool is_unit = in_brackets || field.starts_with('(') || field.starts_with('[');
     if (is_unit && !names.empty()) {
-      names.back().append(field);
+      names.back().append(" ").append(field);
     } else {
       names.emplace_back(field);
     }
+    const std::size_t bracket = field.find_last_of("()[]");
+    if (bracket != field.npos) in_brackets = field[bracket] == '(' || field[bracket] == '[';
   }
   return names;
 }
@@ -161,6 +182,40 @@ std::string unit_of(const std::vector<ColumnName>& columns, const TableLayout& l
   return unit;
 }
 
+// What the unit of an angle says: "deg W", "degrees_north", "rad".
+struct AngleUnit {
+  bool west = false, radians = false, known = true;
+};
+
+AngleUnit angle_unit(std::string_view unit) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz";
+  static const Names kPassedOver = {"e", "east", "n", "north", "positive", "to", "planetocentric"};
+  AngleUnit said;
+  for (std::size_t at = 0; (at = unit.find_first_of(kLetters, at)) != unit.npos;) {
+    const std::string_view word = unit.substr(at, unit.find_first_not_of(kLetters, at) - at);
+    at += word.size();
+    const std::string angle = short_unit(word);
+    if (word == "w" || word == "west") {
+      said.west = true;
+    } else if (angle == "rad") {
+      said.radians = true;
+    } else if (angle != "deg" &&
+               std::find(kPassedOver.begin(), kPassedOver.end(), word) == kPassedOver.end()) {
+      said.known = false;
+    }
+  }
+  return said;
+}
+
+void set_angles(const std::vector<ColumnName>& columns, TableLayout& layout) {
+  const ColumnName &latitude = columns[layout.columns[0]], &longitude = columns[layout.columns[1]];
+  const AngleUnit of_latitude = angle_unit(latitude.unit), of_longitude = angle_unit(longitude.unit);
+  layout.west = of_longitude.west || std::find(kWest.begin(), kWest.end(), longitude.base) != kWest.end();
+  if (of_latitude.radians || of_longitude.radians) layout.radians = 1.0;
+  if (!of_latitude.known || of_latitude.west) layout.unknown = latitude.unit;
+  if (!of_longitude.known) layout.unknown = longitude.unit;
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + astrolith::quoted(name);
@@ -186,6 +241,7 @@ std::string words_of(const std::vector<std::string>& names, const TableLayout& l
 }  // namespace
 
 std::optional<TableLayout> named_layout(std::string_view line) {
+  if (const std::size_t colon = line.find(": "); colon != line.npos) line.remove_prefix(colon + 2);
   const std::vector<std::string> names = names_in(line);
   std::vector<ColumnName> columns;
   for (const std::string& name : names) columns.push_back(parse_name(name));
@@ -194,11 +250,7 @@ std::optional<TableLayout> named_layout(std::string_view line) {
   layout.width = names.size();
   layout.unit = layout.spherical ? columns[layout.columns[2]].unit : unit_of(columns, layout);
   layout.radians = std::numbers::pi / 180.0;
-  if (layout.spherical) {
-    const ColumnName& longitude = columns[layout.columns[1]];
-    layout.west = std::find(kWest.begin(), kWest.end(), longitude.base) != kWest.end();
-    if (longitude.unit == "rad" || columns[layout.columns[0]].unit == "rad") layout.radians = 1.0;
-  }
+  if (layout.spherical) set_angles(columns, layout);
   layout.words = words_of(names, layout);
   return layout;
 }
@@ -210,6 +262,14 @@ Vec3d place_of(double latitude, double longitude, double radius) {
 }
 
 NamedTable::NamedTable(const MeshFile& file) : scan_(file) {
+  find_layout();
+  if (layout_ && !layout_->unknown.empty()) {
+    scan_.fail("the names of the columns state an angle in " + astrolith::quoted(layout_->unknown),
+               "state deg or rad, and E or W");
+  }
+}
+
+void NamedTable::find_layout() {
   std::optional<TableLayout> in_comment;
   while (scan_.next_line()) {
     const std::string_view line = trimmed(scan_.whole_line());
@@ -218,12 +278,16 @@ NamedTable::NamedTable(const MeshFile& file) : scan_(file) {
       if (auto named = named_layout(line.substr(text))) in_comment = std::move(named);
       continue;
     }
-    split_fields(line, fields_);
+    split_fields(line.substr(0, line.find('#')), fields_);
     if (fields_.empty()) continue;
     layout_ = named_layout(line);
     if (layout_) return;
-    if (in_comment && in_comment->width == fields_.size()) layout_ = std::move(in_comment);
-    at_first_row_ = layout_ || parse_number(fields_[0]);
+    const bool has_number = parse_number(fields_[0]).has_value();
+    // A row with fewer columns than names is for the reader to refuse. Longer ones are of clouds of points.
+    const bool lacks_columns =
+        has_number && fields_.size() >= 3 && in_comment && in_comment->width > fields_.size();
+    if (lacks_columns || (in_comment && in_comment->width == fields_.size())) layout_ = std::move(in_comment);
+    at_first_row_ = layout_ || has_number;
     if (!at_first_row_) unknown_names_ = line;
     return;
   }

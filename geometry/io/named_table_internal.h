@@ -19,6 +19,7 @@ struct TableLayout {
   bool spherical = false;                       // latitude, longitude, radius
   bool west = false;                            // longitudes increase to the west
   double radians = 0.0;                         // of one unit of an angle
+  std::string unknown;                          // the unit of an angle whose words are unknown; else empty
   std::string unit;                             // of lengths; empty where no name states one
   std::string words;                            // the columns that are taken and those left out
 };
@@ -27,15 +28,15 @@ struct TableLayout {
 // words. Not all have a known length: numerics/length_unit.h.
 std::string short_unit(std::string_view word);
 
-// The layout that a line of names describes: x_km, x[m] or "x (km)"; lat or latitude, lon or west_longitude,
-// r or radius. Empty where the line names no such columns.
+// The layout that a line of names describes: x_km, x[m] or "x (km)"; lat or latitude, lon, west_longitude or
+// "lon (deg W)", r or radius. The names may follow a colon. Empty where the line names no such columns.
 std::optional<TableLayout> named_layout(std::string_view line);
 
 // The place of latitude, longitude and radius, whose angles are in radians.
 Vec3d place_of(double latitude, double longitude, double radius);
 
 // Reads a table row by row. Fields are separated by commas, semicolons, tabs or blanks. The names stand in
-// the first line, or in a comment before the first row.
+// the first line, or in a comment before the first row. Throws InputError for angles in an unknown unit.
 //   NamedTable table(file);
 //   while (table.next_row()) x = table.number(table.layout()->columns[0], "x");
 class NamedTable {
@@ -57,6 +58,8 @@ class NamedTable {
   [[noreturn]] void fail(std::string_view what, std::string_view remedy) const { scan_.fail(what, remedy); }
 
  private:
+  void find_layout();
+
   TextScanner scan_;
   std::optional<TableLayout> layout_;
   std::string_view unknown_names_;

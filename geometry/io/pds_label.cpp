@@ -47,10 +47,16 @@ LabelBeside label_beside(const std::filesystem::path& file) {
 }
 
 bool says_west(std::string_view label) {
+  constexpr std::string_view kKeyword = "longitude_direction";
   const std::string lower = lower_case(label);
-  const std::size_t direction = lower.find("positive_longitude_direction");
-  if (direction == lower.npos) return lower.find("west longitude") != lower.npos;
-  return lower.substr(direction, 60).find("west") != std::string::npos;
+  for (std::size_t at = 0; (at = lower.find(kKeyword, at)) != lower.npos;) {
+    at += kKeyword.size();
+    std::string_view value = std::string_view(lower).substr(at);
+    value.remove_prefix(std::min(value.find_first_not_of(" \t=\"'>"), value.size()));
+    if (value.starts_with("positive ")) value.remove_prefix(9);
+    if (value.starts_with("west") || value.starts_with("east")) return value.starts_with("west");
+  }
+  return lower.find("west longitude") != lower.npos && lower.find("east longitude") == lower.npos;
 }
 
 bool begins_pds3_label(std::string_view bytes) {

@@ -17,7 +17,8 @@ struct LabelBeside {
 };
 LabelBeside label_beside(const std::filesystem::path& file);
 
-// Whether a label of PDS3 says that longitudes increase to the west.
+// Whether a label says that longitudes increase to the west: by POSITIVE_LONGITUDE_DIRECTION (PDS3) or
+// <cart:longitude_direction> (PDS4), else by words on west longitudes and none on east longitudes.
 bool says_west(std::string_view label);
 
 bool begins_pds3_label(std::string_view bytes);

@@ -35,8 +35,9 @@ void require_width(const NamedTable& table, const TableLayout& layout) {
   table.fail("has " + std::to_string(table.width()) + " columns where " +
                  std::to_string(layout.width == 0 ? 3 : layout.width) +
                  (named ? " are named" : " (x, y, z) are due"),
-             named || table.width() < 3 ? "complete the line"
-                                        : "name the columns in a first line, such as id,x,y,z");
+             named               ? "complete the line or correct the names"
+             : table.width() < 3 ? "complete the line"
+                                 : "name the columns in a first line, such as id,x,y,z");
 }
 
 Vec3d place_in(const NamedTable& table, const TableLayout& layout) {

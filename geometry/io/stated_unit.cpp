@@ -41,6 +41,16 @@ std::string_view comment_of(std::string_view line) {
   return {};
 }
 
+// The unit of lengths that a comment of the form "Units: parsecs" states in a word that short_unit() does not
+// know. Other words than these come in front where it is of something else: "density units: kg/m^3".
+std::string unknown_unit(std::string_view words_before, std::string_view word) {
+  constexpr std::size_t kLongest = 20;
+  const bool alone = words_before.find_first_not_of(" \t") == words_before.npos;
+  if (!alone || word.size() > kLongest || !short_unit(word).empty() || word == "none" || word == "unknown")
+    return {};
+  return std::string(word);
+}
+
 // Whether a short form is of lengths; that of "ft" has no known length, and is stated all the same.
 bool is_of_lengths(std::string_view unit) {
   return unit.find(' ') == unit.npos && !unit.empty() && unit != "deg" && unit != "rad";
@@ -58,6 +68,10 @@ std::string unit_in_words(std::string_view comment) {
     std::string_view rest = std::string_view(lower).substr(at + mark.size());
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t(['\""), rest.size()));
     if (std::string unit = short_unit(first_letters(rest)); is_of_lengths(unit)) return unit;
+    if (!mark.starts_with("unit") || mark == "units of ") continue;
+    if (std::string unit = unknown_unit(std::string_view(lower).substr(0, at), first_letters(rest));
+        !unit.empty())
+      return unit;
   }
   return {};
 }

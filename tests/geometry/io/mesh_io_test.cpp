@@ -152,7 +152,9 @@ TEST(StatedUnit, OfOtherFilesIsEmpty) {
   EXPECT_EQ(unit_in("# length unit: "), "");
   EXPECT_EQ(unit_in("length unit: km\n"), "");
   EXPECT_EQ(unit_in("# the subunit: km\n"), "");
-  EXPECT_EQ(unit_in("# Units: parsecs\n"), "");
+  EXPECT_EQ(unit_in("# Density units: parsecs\n"), "");
+  EXPECT_EQ(unit_in("# Units: unknown\n"), "");
+  EXPECT_EQ(unit_in("# Units: degrees\n"), "");
   EXPECT_EQ(unit_in("# 642 vertices in mesh\n"), "");
   EXPECT_EQ(unit_in("# length unit: parsecmillionths\n"), "");
   EXPECT_EQ(unit_in("# length unit: m\xff\n"), "m");
@@ -173,6 +175,12 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
                                    {"# length unit: km, body-fixed\n", "km"},
                                    {"lat,lon,radius_km\n", "km"},
                                    {"# UNITS = feet\n", "ft"},
+                                   {"# Units: millimetres\n", "mm"},
+                                   {"# Units: centimetres\n", "cm"},
+                                   {"# file units = inches\n", "in"},
+                                   {"# Units: microns\n", "um"},
+                                   {"# Units: parsecs\n", "parsecs"},
+                                   {"# columns: x, y, z (m)\n", "m"},
                                    {"# x, y, z (m)\n", "m"}})
     EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
 }

@@ -1,6 +1,7 @@
 // Tables: lists of points, and shape models as radii on a grid of latitudes and longitudes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -40,10 +41,16 @@ TEST_F(Tables, PointsByTheNamesOfTheirColumns) {
   expect_points("# z x y\n0 3 0\n0 0 4\n");
   expect_points("# made by hand\n% name  X [km] Y [km]  Z [km]\na 3 0 0\nb 0 4 0\n", "km");
   expect_points("name;\"x (m)\";\"y (m)\";\"z (m)\"\nCrater A;3000;0;0\nRidge;0;4000;0\n");
+  expect_points("3 0 0 # far\n0 4 0\n");
+  expect_points("# Columns: z x y\n0 3 0\n0 0 4\n");
   expect_points("z/km\tx/km\ty/km\n0\t3\t0\n0\t0\t4\n", "m", 1000);
   expect_points("lat,lon,radius\n0,0,3\n0,90,4\n");
   expect_points("Longitude (deg), Latitude (deg), Radius (m)\n0,0,3000\n90,0,4000\n");
   expect_points("lon_w,lat,r_km\n0,0,3\n270,0,4\n");
+  for (const char* west :
+       {"deg W", "\xc2\xb0W", "degrees west", "degrees_west", "Positive West", "deg) (west"})
+    expect_points("lat (deg N),lon (" + std::string(west) + "),r_km\n0,0,3\n0,270,4\n");
+  expect_points("lat [degrees north] lon [degrees east] r\n0 0 3\n0 90 4\n");
   expect_points("lat_rad lon_rad r\n0 0 3\n0 1.5707963267948966 4\n");
   expect_points("i pos_x pos_y pos_z\n1 3 0 0\n2 0 4 0\n");
   expect_points("x,y,z,potential_J_kg,acceleration_x_m_s2\n3,0,0,-1,2\n0,4,0,-1,2\n");
@@ -65,6 +72,11 @@ TEST_F(Tables, OtherColumnsAreRefused) {
   expect_refused("x_ft y_ft z_ft\n1 2 3\n", "the columns state lengths in 'ft'");
   expect_refused("x_m,y_m,z_km\n1,2,3\n", "'several units'");
   expect_refused("lat,lon,r\n91,2,3\n", "beyond a pole");
+  expect_refused("lat,lon (gon),r\n1,2,3\n",
+                 "line 1: the names of the columns state an angle in 'gon'; state deg");
+  expect_refused("lat (deg S),lon,r\n1,2,3\n", "state an angle in 'deg s'");
+  expect_refused("# id x y z\n1 2 3\n",
+                 "line 2: has 3 columns where 4 are named; complete the line or correct");
   expect_refused("1,5;2,5;3,5\n", "the number '1,5' has a decimal comma");
   expect_refused("x y z\n1,5 2,5 3,5\n", "line 2: the number '1,5' has a decimal comma");
   expect_refused("PK\x03\x04......", "save its table as .csv", "p.xlsx");
@@ -126,6 +138,11 @@ TEST_F(Tables, GridsThatAreNone) {
   std::string gap = grid_table({.header = "lat lon radius\n"});
   gap.erase(gap.size() / 2 / 32 * 32, 32);
   EXPECT_FALSE(refusal(gap).empty());
+  std::string diagonal;  // its grid would take 80 GB
+  for (int i = 1; i < 100000; ++i)
+    diagonal += std::to_string(i * 0.0018 - 90) + " " + std::to_string(i * 0.0036) + " 5\n";
+  EXPECT_FALSE(refusal(diagonal).empty());
+  EXPECT_NE(refusal("lat lon radius\n" + diagonal).find("no regular grid"), std::string::npos);
 }
 
 const std::string kLabel =
@@ -152,6 +169,8 @@ TEST_F(Tables, LongitudesToTheWest) {
     for (int lon = 0; lon < 360; lon += 30)
       rows += std::to_string(lat) + " " + std::to_string(lon) + (lon == 90 && lat == 0 ? " 7\n" : " 5\n");
   }
+  std::string commas = rows;
+  std::replace(commas.begin(), commas.end(), ' ', ',');
   const auto lowest_y = [&](const std::string& name, const std::string& text) {
     const TriangleMesh mesh = read_mesh(folder_.write(name, text));
     EXPECT_GT(volume(mesh), 0);
@@ -164,6 +183,15 @@ TEST_F(Tables, LongitudesToTheWest) {
   EXPECT_NEAR(lowest_y("c.tab", west + rows), -7, 1e-9);
   folder_.write("b.lbl", west);
   EXPECT_NEAR(lowest_y("b.tab", rows), -7, 1e-9);
+  EXPECT_NEAR(lowest_y("d.csv", "lat (deg), lon (deg W), r (km)\n" + commas), -7, 1e-9);
+  const std::string east =
+      "PDS_VERSION_ID = PDS3\n^TABLE = \"E.TAB\"\nPOSITIVE_LONGITUDE_DIRECTION = EAST\n"
+      "WESTERNMOST_LONGITUDE = 0\nDESCRIPTION = \"Not west longitude\"\nEND\n";
+  EXPECT_NEAR(lowest_y("e.tab", east + rows), -5, 1e-9);
+  folder_.write(
+      "f.xml",
+      "<file_name>f.tab</file_name><cart:longitude_direction>Positive West</cart:longitude_direction>");
+  EXPECT_NEAR(lowest_y("f.tab", rows), -7, 1e-9);
 }
 
 }  // namespace
