@@ -65,7 +65,7 @@ std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, 
     return textures;
   }
   const ExemplarLayer layer = model == TextureModel::kPhase
-                                  ? phase_exemplar({square}, name, seed)
+                                  ? phase_exemplar({square}, name, seed, heed)
                                   : prepare_exemplar(square, name, seed, heed).layer;
   for (int t = 0; t < kTextures; ++t)
     textures.push_back(exemplar_texture_like(layer, square, seed + static_cast<std::uint64_t>(t)));

@@ -10,6 +10,7 @@
 #include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "estimation/gabor/image/missing_ground.h"
 #include "numerics/errors.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
@@ -26,9 +27,10 @@ void fit_lobes(const std::string& name, const TextureFitOptions& options, const 
 
 void make_random_phases(const std::string& name, const TextureFitOptions& options, const Progress& progress,
                         TextureFit& fit) {
-  fit.image = phase_exemplar(fit.photo, name, options.recipe.seed);
+  fit.image = phase_exemplar(fit.photo, name, options.recipe.seed, stretch(progress, 0.0, 0.5));
   fit.recipe = exemplar_recipe(*fit.image, options.recipe);
-  fit.gaussianity = test_gaussianity(known_texture(fit.luma()), options.photo.seed, progress);
+  fit.gaussianity =
+      test_gaussianity(known_texture(fit.luma()), options.photo.seed, stretch(progress, 0.5, 1.0));
 }
 
 // An exemplar holds no missing ground.

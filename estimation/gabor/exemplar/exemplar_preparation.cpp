@@ -11,6 +11,7 @@
 #include "estimation/gabor/exemplar/exemplar_pixels.h"
 #include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/exemplar/plane_exemplar.h"
@@ -18,12 +19,17 @@
 namespace astrolith {
 namespace {
 
+void heed_exemplar(const Progress& progress, double fraction) {
+  if (!report(progress, fraction, "exemplar")) throw WorkError("stopped before the exemplar was prepared");
+}
+
 // The image whose ranks are those of `ranks` and whose values are those of `values`.
-GreyImage with_ranks_of(const GreyImage& ranks, const GreyImage& values) {
+GreyImage with_ranks_of(const GreyImage& ranks, const GreyImage& values, const Progress& progress) {
   std::vector<std::size_t> order(ranks.values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return ranks.values[a] < ranks.values[b]; });
+  heed_exemplar(progress, 0.6);
   std::vector<double> ascending = values.values;
   std::sort(ascending.begin(), ascending.end());
   GreyImage result = ranks;
@@ -31,17 +37,25 @@ GreyImage with_ranks_of(const GreyImage& ranks, const GreyImage& values) {
   return result;
 }
 
-GreyImage continued(const GreyImage& photo, ExemplarVariant variant) {
+GreyImage continued(const GreyImage& photo, ExemplarVariant variant, const Progress& progress) {
+  heed_exemplar(progress, 0.0);
   if (variant == ExemplarVariant::kMirrored) return photo;
   GreyImage periodic = decompose_periodic(photo).periodic;
-  return variant == ExemplarVariant::kMatched ? with_ranks_of(periodic, photo) : periodic;
+  if (variant != ExemplarVariant::kMatched) return periodic;
+  heed_exemplar(progress, 0.2);
+  return with_ranks_of(periodic, photo, stretch(progress, 0.2, 1.0));
 }
 
 // The height has the deviation of the image, not of the photo: where its periodic component lacks light from
 // one side, its grains are no higher for that.
-ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant) {
+ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant,
+                               const Progress& progress) {
   std::vector<GreyImage> image;
-  for (const GreyImage& plane : planes) image.push_back(continued(plane, variant));
+  for (const GreyImage& plane : planes) {
+    const double from = static_cast<double>(image.size()), all = static_cast<double>(planes.size()) + 1.0;
+    image.push_back(continued(plane, variant, stretch(progress, from / all, (from + 1.0) / all)));
+  }
+  heed_exemplar(progress, 0.8);
   const bool color = planes.size() == 3;
   const GreyImage luma = color ? luma_of(image) : image.front();
   ExemplarLayer layer;
@@ -63,10 +77,12 @@ PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const Gre
   PreparedExemplar best;
   for (const ExemplarVariant variant : kExemplarVariants) {
     const int number = static_cast<int>(variant);
-    if (!report(progress, number / 3.0, "exemplar"))
-      throw WorkError("stopped before the exemplar was prepared");
-    ExemplarLayer layer = layer_of_variant(planes, variant);
-    best.scores[number] = texture_score(exemplar_texture_like(layer, judged, seed), judged);
+    const Progress part = stretch(progress, number / 3.0, (number + 1) / 3.0);
+    ExemplarLayer layer = layer_of_variant(planes, variant, stretch(part, 0.0, 0.6));
+    heed_exemplar(part, 0.6);
+    const GreyImage texture = exemplar_texture_like(layer, judged, seed);
+    heed_exemplar(part, 0.8);
+    best.scores[number] = texture_score(texture, judged);
     if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
       continue;
     best.variant = variant;

@@ -12,8 +12,10 @@
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/octaves.h"
 #include "estimation/gabor/spectrum/tapered_periodogram.h"
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/portable_double.h"
+#include "numerics/progress_stretch.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
@@ -21,6 +23,10 @@ namespace astrolith {
 namespace {
 
 constexpr int kPreferredSide = 1024;
+
+void heed_phases(const Progress& progress, double fraction) {
+  if (!report(progress, fraction, "random phases")) throw WorkError("stopped; nothing is written");
+}
 
 int image_side(int side, bool repeats) { return repeats ? side : longest_phase_side(side); }
 
@@ -57,8 +63,16 @@ PowerSpectrum spectrum_of_plane(const GreyImage& plane, const ImageSides& sides)
   return spectrum;
 }
 
+GreyImage random_texture(const GreyImage& plane, const ImageSides& sides, std::uint32_t seed,
+                         const Progress& progress) {
+  heed_phases(progress, 0.0);
+  const PowerSpectrum spectrum = spectrum_of_plane(plane, sides);
+  return random_phase_image(spectrum, seed, stretch(progress, 0.5, 1.0));
+}
+
 // Red, green and blue: the mean colour and the texture of each principal axis along it.
-std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes, std::uint64_t seed) {
+std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes, std::uint64_t seed,
+                                           const Progress& progress) {
   const std::vector<ImageChannel> channels = principal_channels(planes);
   // All channels get the size of the first, which holds most of the variance.
   const ImageSides sides = image_sides(channels.front().image);
@@ -69,8 +83,9 @@ std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes,
     colors.push_back({sides.width, sides.height, std::vector<double>(pixels, part)});
   for (std::size_t k = 0; k < channels.size(); ++k) {
     const ImageChannel& c = channels[k];
-    const GreyImage texture =
-        random_phase_image(spectrum_of_plane(c.image, sides), hash_seed(seed, static_cast<std::uint32_t>(k)));
+    const double from = static_cast<double>(k), all = static_cast<double>(channels.size());
+    const GreyImage texture = random_texture(c.image, sides, hash_seed(seed, static_cast<std::uint32_t>(k)),
+                                             stretch(progress, from / all, (from + 1.0) / all));
     const double axis[] = {c.axis.x, c.axis.y, c.axis.z};
     for (std::size_t i = 0; i < 3 * pixels; ++i)
       colors[i / pixels].values[i % pixels] += axis[i / pixels] * texture.values[i % pixels];
@@ -82,12 +97,13 @@ std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes,
 
 int longest_phase_side(int side) { return std::min(4 * side, std::max(side, kPreferredSide)); }
 
-GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed) {
+GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed, const Progress& progress) {
   const FourierTransform fourier(spectrum.width, spectrum.height);
   std::vector<std::complex<double>> half(fourier.half_size());
   const auto pixels = static_cast<double>(fourier.grid_size());
   std::size_t i = 0;
   for (int y = 0; y < spectrum.height; ++y) {
+    heed_phases(progress, static_cast<double>(y) / spectrum.height);
     for (int x = 0; x < fourier.half_width(); ++x, ++i) {
       const double power =
           spectrum.power[static_cast<std::size_t>(y) * static_cast<std::size_t>(spectrum.width) +
@@ -102,15 +118,16 @@ GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed) 
 }
 
 ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
-                             std::uint64_t seed) {
+                             std::uint64_t seed, const Progress& progress) {
   const bool color = planes.size() == 3;
   if (color) require_colors(planes, name);
   const GreyImage photo = color ? luma_of(planes) : planes.front();
   require_exemplar(photo, name);
+  const Progress most = stretch(progress, 0.0, 0.9);
   const std::vector<GreyImage> textures =
-      color
-          ? random_phase_colors(planes, seed)
-          : std::vector{random_phase_image(spectrum_of_plane(photo, image_sides(photo)), hash_seed(seed, 0))};
+      color ? random_phase_colors(planes, seed, most)
+            : std::vector{random_texture(photo, image_sides(photo), hash_seed(seed, 0), most)};
+  heed_phases(progress, 0.9);
   const GreyImage noise = color ? luma_of(textures) : textures.front();
   ExemplarLayer layer;
   layer.pixels =

@@ -7,14 +7,16 @@
 
 #include "estimation/gabor/image/grey_image.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
+#include "numerics/progress.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
 
 // A periodic Gaussian texture with the power of every frequency of a spectrum and random phases (Galerne,
 // Gousseau and Morel, Random phase textures, IEEE TIP 2011), mean 0. Its variance is that of the spectrum
-// exactly.
-GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed);
+// exactly. Throws WorkError when progress asks to stop.
+GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed,
+                             const Progress& progress = {});
 
 // The longest side of the image of random phases that a side of a photo may have, in pixels.
 int longest_phase_side(int side);
@@ -24,8 +26,9 @@ int longest_phase_side(int side);
 // an axis where the photo does not repeat the image is four times as long, at most 1024 pixels or the photo's
 // own length: the longer it is, the less does blending change its spectrum. Lengths are pixels.
 // height_rms is the deviation of the texture or of its luma: that of the photo but for light from one side
-// and other features wider than it. Throws as require_exemplar() and require_colors() do.
+// and other features wider than it. Throws as require_exemplar() and require_colors() do,
+// and WorkError when progress asks to stop.
 ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
-                             std::uint64_t seed);
+                             std::uint64_t seed, const Progress& progress = {});
 
 }  // namespace astrolith

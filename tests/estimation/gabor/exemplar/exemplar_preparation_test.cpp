@@ -1,5 +1,7 @@
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
 
+#include <algorithm>
+
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 
@@ -74,6 +76,23 @@ TEST(ExemplarPreparation, KeepsTheColoursOfAPhoto) {
   EXPECT_NEAR(grey.layer.height_rms / prepared.layer.height_rms, 1.0, 1e-3);
   blue.values[5] = 300.0;
   EXPECT_THROW(prepare_exemplar(std::vector<GreyImage>{red, green, blue}, "p", 1), InputError);
+}
+
+TEST(ExemplarPreparation, MovesItsProgressAndStops) {
+  const GreyImage photo = discs(64);
+  std::vector<double> fractions;
+  const std::vector<GreyImage> planes(3, photo);
+  prepare_exemplar(planes, "p", 1, [&](double fraction, std::string_view) {
+    fractions.push_back(fraction);
+    return true;
+  });
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.size(), 20u);
+  for (std::size_t most = 0; most + 1 < fractions.size(); most += 5) {
+    std::size_t count = 0;
+    const auto stop = [&](double, std::string_view) { return count++ < most; };
+    EXPECT_THROW(prepare_exemplar(planes, "p", 1, stop), WorkError) << most;
+  }
 }
 
 TEST(ExemplarPreparation, RefusesPhotosThatAreTooSmallOrFlat) {

@@ -67,6 +67,24 @@ TEST(PhaseExemplar, PaintsTheColoursOfItsPrincipalAxes) {
   EXPECT_NEAR(std::sqrt(variance_of(blue)), std::sqrt(variance_of(planes[2].values)), 0.002);
 }
 
+TEST(PhaseExemplar, MovesItsProgressAndStops) {
+  const GreyImage photo = testing::cut_realisation(testing::ring_power, 2).image;
+  double last = -1.0;
+  int calls = 0;
+  phase_exemplar({photo, photo, photo}, "photo", 1, [&](double fraction, std::string_view) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    return ++calls > 0;
+  });
+  EXPECT_GT(calls, 100);
+  EXPECT_LE(last, 1.0);
+  for (const int most : {0, 1, 100, calls - 1}) {
+    int count = 0;
+    const auto stop = [&](double, std::string_view) { return count++ < most; };
+    EXPECT_THROW(phase_exemplar({photo, photo, photo}, "photo", 1, stop), WorkError) << most;
+  }
+}
+
 TEST(PhaseExemplar, RefusesWhatIsNoPhoto) {
   EXPECT_THROW(phase_exemplar({GreyImage{64, 64, std::vector<double>(4096, 0.5)}}, "flat", 1), InputError);
   EXPECT_THROW(phase_exemplar({GreyImage{16, 64, std::vector<double>(1024, 0.5)}}, "small", 1), InputError);
