@@ -179,16 +179,17 @@ def closed_reader(stream):
 # What is done to a run, the statuses that it may end with, whether the moment matters, and words (a regular expression)
 # one of which the line must hold when the program fails or stops.
 Fault = collections.namedtuple("Fault", "do statuses moments word", defaults=(True, ""))
-DONE, FAILED, WRONG, STOPPED = 0, 1, 2, 3
+DONE, FAILED, WRONG = 0, 1, 2
+STOPPED = {-signal.SIGINT, -signal.SIGTERM}  # a program dies of the signal that stopped it
 MORE_MOMENTS = {"SIGKILL": 30, "killed and started again": 4}  # at most, for outputs that ask for them
 IN_LONG_WORK = "Ctrl-C in long work"
 FAULTS = {
     "SIGKILL": Fault(signalled(signal.SIGKILL), {DONE, -9}),
     "killed and started again": Fault(killed_and_started_again, {DONE}),
-    "SIGTERM": Fault(signalled(signal.SIGTERM), {DONE, FAILED, STOPPED, -15}, word="stopped"),
-    "Ctrl-C": Fault(signalled(signal.SIGINT), {DONE, FAILED, STOPPED, -2}, word="stopped"),
-    "Ctrl-C twice": Fault(signalled(signal.SIGINT, 2), {DONE, FAILED, STOPPED, -2}, word="stopped"),
-    IN_LONG_WORK: Fault(stopped_in_long_work, {FAILED, STOPPED}, word="stopped"),
+    "SIGTERM": Fault(signalled(signal.SIGTERM), {DONE, -signal.SIGTERM}, word="stopped"),
+    "Ctrl-C": Fault(signalled(signal.SIGINT), {DONE, -signal.SIGINT}, word="stopped"),
+    "Ctrl-C twice": Fault(signalled(signal.SIGINT, 2), {DONE, -signal.SIGINT}, word="stopped"),
+    IN_LONG_WORK: Fault(stopped_in_long_work, {-signal.SIGINT}, word="stopped"),
     "inputs vanish": Fault(without("inputs"), {DONE, FAILED, WRONG}),
     "inputs are cut": Fault(cut_inputs, {DONE, FAILED, WRONG}),
     "the folder vanishes": Fault(without("out"), {DONE, FAILED, WRONG}),

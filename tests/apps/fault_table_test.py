@@ -82,15 +82,13 @@ def wrong_files(run, output, kind, wanted, programs, ending):
             continue
         if output.program == "classify" and kind.startswith("inputs") and ending.status == FAILED:
             continue  # it says which shapes it could not read, and learns from the others
-        if not output.keeps_best or ending.status not in (STOPPED, -2):  # a second Ctrl-C may come when all is written
+        if not output.keeps_best or ending.status not in STOPPED:
             return f"{file.name} is not whole"
         if file.suffix in (".json", ".astro") and not is_recipe(programs, file):
             return f"{file.name} is no recipe"
     lost = run.left_behind or kind == "the folder vanishes" and makes_members(output)  # members make their folder again
     if ending.status == DONE and not lost and not is_complete(run, wanted):
         return "status 0 without all outputs"
-    if ending.status == STOPPED and output.files and not files and not makes_members(output):
-        return f"status {STOPPED} without an output"
     return f"leaves {sorted(run.left_behind)}" if run.left_behind - set(output.files) else ""
 
 
@@ -102,8 +100,7 @@ def wrong_words(run, output, kind, wanted, ending, slowness):
         return f"status {ending.status}"
     if fault.word == "stopped" and ending.seconds > LATEST * slowness:
         return f"took {ending.seconds:.1f} s to end"
-    stopped = ending.status == STOPPED and not (wanted and is_complete(run, wanted))  # else Ctrl-C came when all was done
-    if fault.word and (ending.status == FAILED or stopped) and not re.search(fault.word, ending.words):
+    if fault.word and ending.status == FAILED and not re.search(fault.word, ending.words):
         return f"does not speak of {fault.word}"
     if ending.status not in (FAILED, WRONG) or kind == "stderr is closed":
         return ""
