@@ -196,8 +196,8 @@ void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& 
   }
   if (region.is_patch) {
     const Vec3d p = recipe.origin + nearby_surface_point(field, region.center);
-    throw InputError(fmt::format(
-        "patch: no surface crosses this cube; there is some near {} {} {}", p.x, p.y, p.z));
+    throw InputError(
+        fmt::format("patch: no surface crosses this cube; there is some near {} {} {}", p.x, p.y, p.z));
   }
   if (region.is_cut()) {
     throw InputError(fmt::format("tile: no surface lies in tile {} of {}; take another",

@@ -63,9 +63,10 @@ TEST_F(Compare, WindingAndWeldsMakeNoDifference) {
   write_mesh(testing::reversed(body), folder_ / "inside_out.obj", {});
   write_mesh(tenth, folder_ / "tenth.obj", {});
   write_mesh(soup, folder_ / "soup.obj", {});
-  for (const auto& [file, words] : testing::Refusals{{"inside_out.obj", "turned 9216 facets"},
-                                                     {"tenth.obj", "turned 922 facets"},
-                                                     {"soup.obj", "merged 23040 repeated or unused vertices"}}) {
+  for (const auto& [file, words] :
+       testing::Refusals{{"inside_out.obj", "turned 9216 facets"},
+                         {"tenth.obj", "turned 922 facets"},
+                         {"soup.obj", "merged 23040 repeated or unused vertices"}}) {
     EXPECT_TRUE(has(succeed("body.obj " + file + " -o c.json --points 1000 --samples 5000"), words)) << file;
     EXPECT_GT(json("c.json")["similarity"], 0.94) << file;  // of two samplings of 1,000 points
   }

@@ -47,7 +47,8 @@ TEST_F(FitShape, ABodyFarFromTheOriginOfItsFrameGetsAnOriginOfItsOwn) {
   TriangleMesh boulder = read_mesh(folder_ / "egg.obj");
   for (Vec3d& p : boulder.vertices) p = Vec3d{16.5, 0, 0} + 0.01 * p;
   write_mesh(boulder, folder_ / "boulder.obj", {});
-  const std::string said = succeed("boulder.obj -o far.json --spheres 12 --points 400 --base-only --summary s.json");
+  const std::string said =
+      succeed("boulder.obj -o far.json --spheres 12 --points 400 --base-only --summary s.json");
   EXPECT_TRUE(has(said, "the recipe has an origin of its own, 16.5 0 0 km"));
   EXPECT_LT(json("s.json")["mean_distance"], 0.02);
   const Recipe far = recipe("far.json");
