@@ -6,7 +6,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kLargestCoordinate = 1e18;
+constexpr double kLargestPlace = 1e18;
 
 TableLayout layout_of(const NamedTable& table, const MeshFile& file) {
   if (table.layout()) return *table.layout();
@@ -65,7 +65,7 @@ PointTable read_point_table(const std::filesystem::path& file, std::string_view 
     require_width(table, layout);
     const Vec3d p = scale * place_in(table, layout);
     for (const double c : {p.x, p.y, p.z}) {
-      if (!(std::fabs(c) <= kLargestCoordinate))
+      if (!(std::fabs(c) <= kLargestPlace))
         table.fail("a coordinate is beyond 1e18", "state lengths in a larger unit");
     }
     points.points.push_back(p);

@@ -147,7 +147,7 @@ def test_wrong_bodies():
         astrolith.gravity((CORNERS, CUBE[1:]), 1000.0)
     with pytest.warns(UserWarning, match="^body: turned 12 facets"):
         inside_out = astrolith.gravity((CORNERS, CUBE[:, ::-1].copy()), 1000.0)
-    assert inside_out.figures == astrolith.gravity((CORNERS, CUBE), 1000.0).figures
+    assert inside_out.figures.body.mass_kg == pytest.approx(astrolith.gravity((CORNERS, CUBE), 1000.0).figures.body.mass_kg)
     with pytest.raises(ValueError, match="^unit: "):
         astrolith.gravity(BALL, 1000.0, unit="m")
     with pytest.raises(ValueError, match="^body: .*without a body"):
