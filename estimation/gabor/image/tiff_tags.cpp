@@ -42,7 +42,7 @@ bool has_raw_mark(const std::array<char, 16>& start) {
     return std::memcmp(start.data() + place, mark, std::strlen(mark)) == 0;
   };
   return at(8, "CR\2") || at(4, "ftypcrx") || at(0, "FUJIFILMCCD") || at(0, "IIRO") || at(0, "IIRS") ||
-         at(0, "MMOR") || at(0, "IIU\0");
+         at(0, "MMOR") || at(0, "IIU");
 }
 
 // DNG has its version as a tag. What else cameras write has a thumbnail, or a mosaic of colours, first.
