@@ -59,6 +59,11 @@ std::vector<MeshPart> parts_of(const TriangleMesh& mesh, const std::vector<std::
   return parts;
 }
 
+bool box_holds(const Box& outer, const Box& inner) {
+  const Box common = common_part(outer, inner);
+  return common.min == inner.min && common.max == inner.max;
+}
+
 double PartNesting::share_inside(const MeshPart& a, const MeshPart& b) {
   constexpr std::size_t kMostFaces = 64;
   const std::vector<Triangle> near = faces_in(common_part(a.box, b.box), a.mesh);
@@ -82,10 +87,7 @@ double PartNesting::share_inside(const MeshPart& a, const MeshPart& b) {
 bool PartNesting::lies_inside(const MeshPart& a, const MeshPart& b) {
   constexpr double kBoxTest = 16.0;  // about the time of so many angles
   angles_left_ -= kBoxTest;
-  const bool in_box = a.box.min.x >= b.box.min.x && a.box.min.y >= b.box.min.y &&
-                      a.box.min.z >= b.box.min.z && a.box.max.x <= b.box.max.x &&
-                      a.box.max.y <= b.box.max.y && a.box.max.z <= b.box.max.z;
-  return in_box && !spent() && share_inside(a, b) == 1.0;
+  return box_holds(b.box, a.box) && !spent() && share_inside(a, b) == 1.0;
 }
 
 }  // namespace astrolith

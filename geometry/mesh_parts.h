@@ -17,6 +17,9 @@ struct MeshPart {
 // Splits a mesh by `number`, (#F) the part of each face, from 0 without gaps.
 std::vector<MeshPart> parts_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number);
 
+// Whether all of the inner box lies in the outer one.
+bool box_holds(const Box& outer, const Box& inner);
+
 // Answers whether parts lie inside one another, by winding numbers at places of their surfaces. The work is
 // bounded: 2e8 solid angles of triangles in all.
 class PartNesting {

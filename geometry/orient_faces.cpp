@@ -74,11 +74,6 @@ Components wind_components(TriangleMesh& mesh) {
   return components;
 }
 
-bool box_holds(const Box& outer, const Box& inner) {
-  const Box common = common_part(outer, inner);
-  return common.min == inner.min && common.max == inner.max;
-}
-
 // (#parts) the outermost part around each, or the part itself. Where finding out would take too long, a part
 // in the box of the largest belongs to that.
 std::vector<std::size_t> outermost(const std::vector<MeshPart>& parts) {

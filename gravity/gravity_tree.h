@@ -57,8 +57,8 @@ struct GravityTree {
   // most_order, and the acceleration, turned round, of its terms below most_order. A sum over the surface
   // loses digits with the distance, because almost all of it cancels; of these terms none cancel.
   GravityMultipoles far{};
-  // Of the potential's terms of degrees l = most_order - 2 to most_order: the largest root mean square over
-  // directions at distance d, as a multiple of (first node's radius / d)^l volume / d.
+  // How strong the potential's last terms are, l = most_order - 2 to most_order: the largest root mean square
+  // over directions at distance d, as a multiple of (first node's radius / d)^l volume / d.
   double far_strength = 0.0;
 };
 

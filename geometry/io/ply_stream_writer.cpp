@@ -106,9 +106,8 @@ void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
   for (std::size_t first = 0; first < triangles.size(); first += kAtOnce) {
     char* out = block.data();
     for (const Triangle& triangle : triangles.subspan(first, std::min(kAtOnce, triangles.size() - first))) {
-      *out = 3;
-      std::memcpy(out + 1, triangle.data(), sizeof triangle);
-      out += kPlyTriangleBytes;
+      const auto bytes = ply_triangle(triangle);
+      out = std::copy(bytes.begin(), bytes.end(), out);
     }
     const auto bytes = static_cast<std::size_t>(out - block.data());
     if (std::fwrite(block.data(), 1, bytes, spill_.get()) != bytes) fail_spill();

@@ -60,7 +60,7 @@ class ManifoldCheck : public MeshSink {
   std::uint32_t window_first_ = 0;  // first vertex of the batch before the last
   std::uint32_t batch_first_ = 0;   // first vertex of the last batch
   std::uint32_t end_ = 0;           // number of vertices so far
-  // Of the vertices from window_first_ on.
+  // The next three hold the vertices from window_first_ on.
   std::vector<Link> links_;
   std::vector<std::uint32_t> counts_;  // of the edges of each link
   std::vector<std::uint32_t> parent_;  // union-find
