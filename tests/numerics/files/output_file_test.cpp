@@ -196,7 +196,7 @@ TEST_F(OutputFileTest, ALinkIsWrittenThrough) {
   for (const std::string content : {"first", "second"}) {
     astrolith::write_file(folder / "link_to_link", content);
     EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link_to_link"));
-    EXPECT_EQ(text_of(folder / "elsewhere" / "file"), content);
+    EXPECT_EQ(testing::text_of(folder / "elsewhere" / "file"), content);
   }
   fs::create_symlink("ring", folder / "ring");
   EXPECT_THROW(OutputFile(folder / "ring"), InputError);
@@ -215,7 +215,7 @@ TEST_F(OutputFileTest, AReadOnlyFileIsNotReplaced) {
   astrolith::write_file(folder / "kept", "kept");
   fs::permissions(folder / "kept", fs::perms(0444));
   EXPECT_THROW(OutputFile(folder / "kept"), InputError);
-  EXPECT_EQ(text_of(folder / "kept"), "kept");
+  EXPECT_EQ(testing::text_of(folder / "kept"), "kept");
 }
 
 TEST_F(OutputFileTest, TheNameMayBeAsLongAsTheSystemAllows) {
