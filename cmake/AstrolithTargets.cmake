@@ -7,7 +7,9 @@ add_library(astrolith_compile_rules INTERFACE)
 target_compile_options(astrolith_compile_rules INTERFACE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off;-fno-math-errno;-fno-trapping-math>
   # g++ 12.2 drops the rounding of double(float(x)) when it vectorises such statements pairwise.
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>
+  # No other library takes the place of these functions, so that calls within a source can be inlined.
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-semantic-interposition>)
 if(ASTROLITH_SANITIZE)
   target_compile_options(astrolith_compile_rules INTERFACE
     -fsanitize=${ASTROLITH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -22,6 +22,11 @@ class MeshSink {
   // Vertices are numbered from 0 in the order of the calls. Triangles may name only vertices already given.
   virtual void add_vertices(std::span<const MeshVertex> vertices) = 0;
   virtual void add_triangles(std::span<const Triangle> triangles) = 0;
+  // Both: what a mesher has made at a time.
+  virtual void add_batch(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles) {
+    add_vertices(vertices);
+    add_triangles(triangles);
+  }
 };
 
 // Keeps nothing: for callers who only want the counts of a mesher.
@@ -40,6 +45,9 @@ class SinkList : public MeshSink {
   }
   void add_triangles(std::span<const Triangle> triangles) override {
     for_each([&](MeshSink& sink) { sink.add_triangles(triangles); });
+  }
+  void add_batch(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles) override {
+    for_each([&](MeshSink& sink) { sink.add_batch(vertices, triangles); });
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -52,7 +53,11 @@ struct PlyVertexParts {
 std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
                        const PlyVertexParts& parts);
 
-// A triangle as one uchar, 3, and three little-endian uint32.
-std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle);
+// Puts a triangle at `out` as one uchar, 3, and three little-endian uint32; returns where the next one goes.
+inline char* put_ply_triangle(const Triangle& triangle, char* out) {
+  *out = 3;
+  std::memcpy(out + 1, triangle.data(), sizeof triangle);
+  return out + kPlyTriangleBytes;
+}
 
 }  // namespace astrolith

@@ -40,13 +40,6 @@ std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std
   return header + "end_header\n";
 }
 
-std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
-  std::array<char, kPlyTriangleBytes> bytes;
-  bytes[0] = 3;
-  std::memcpy(bytes.data() + 1, triangle.data(), sizeof triangle);
-  return bytes;
-}
-
 PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info,
                                  VertexLabeller labeller, VertexPainter painter)
     : target_(file), info_(info), labeller_(std::move(labeller)), painter_(std::move(painter)), out_(file) {
@@ -101,17 +94,10 @@ void PlyStreamWriter::require_known_vertices(std::span<const Triangle> triangles
 
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
   require_known_vertices(triangles);
-  constexpr std::size_t kAtOnce = 16384;
-  std::vector<char> block(std::min(kAtOnce, triangles.size()) * kPlyTriangleBytes);
-  for (std::size_t first = 0; first < triangles.size(); first += kAtOnce) {
-    char* out = block.data();
-    for (const Triangle& triangle : triangles.subspan(first, std::min(kAtOnce, triangles.size() - first))) {
-      const auto bytes = ply_triangle(triangle);
-      out = std::copy(bytes.begin(), bytes.end(), out);
-    }
-    const auto bytes = static_cast<std::size_t>(out - block.data());
-    if (std::fwrite(block.data(), 1, bytes, spill_.get()) != bytes) fail_spill();
-  }
+  packed_.resize(triangles.size() * kPlyTriangleBytes);
+  char* out = packed_.data();
+  for (const Triangle& triangle : triangles) out = put_ply_triangle(triangle, out);
+  if (std::fwrite(packed_.data(), 1, packed_.size(), spill_.get()) != packed_.size()) fail_spill();
   num_triangles_ += triangles.size();
 }
 
@@ -124,15 +110,8 @@ void PlyStreamWriter::finish() {
 }
 
 void PlyStreamWriter::append_spill() {
-  if (std::fflush(spill_.get()) != 0 || fseeko(spill_.get(), 0, SEEK_SET) != 0) fail_spill();
-  std::vector<char> block(std::size_t{1} << 20);
-  std::uint64_t left = num_triangles_ * kPlyTriangleBytes;
-  while (left > 0) {
-    const std::size_t bytes = std::fread(block.data(), 1, block.size(), spill_.get());
-    if (bytes == 0) fail_spill();
-    out_.write(block.data(), bytes);
-    left -= bytes;
-  }
+  if (std::fflush(spill_.get()) != 0) fail_spill();
+  out_.append_file(::fileno(spill_.get()), num_triangles_ * kPlyTriangleBytes);
   spill_.reset();
 }
 

@@ -10,6 +10,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_sink.h"
 #include "numerics/files/output_file.h"
+#include "numerics/unset_vector.h"
 
 namespace astrolith {
 
@@ -64,6 +65,7 @@ class PlyStreamWriter : public MeshSink {
   VertexPainter painter_;    // null where no colours are written
   OutputFile out_;
   FileHandle spill_;
+  UnsetVector<char> packed_;  // triangles on their way to the spill
   std::uint64_t num_vertices_ = 0;
   std::uint64_t num_triangles_ = 0;
 };

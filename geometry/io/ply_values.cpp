@@ -1,5 +1,7 @@
 #include "geometry/io/ply_values.h"
 
+#include <array>
+
 #include "geometry/io/format_internal.h"
 #include "geometry/io/ply_header_internal.h"
 
@@ -33,7 +35,8 @@ void write_ply_values(const TriangleMesh& mesh, std::span<const VertexValues> qu
     for (const VertexValues& q : quantities) buffer.append_value(static_cast<float>(q.values[i]));
   }
   for (const Triangle& triangle : mesh.triangles) {
-    const auto bytes = ply_triangle(triangle);
+    std::array<char, kPlyTriangleBytes> bytes;
+    put_ply_triangle(triangle, bytes.data());
     buffer.append({bytes.data(), bytes.size()});
   }
   buffer.flush();

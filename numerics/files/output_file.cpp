@@ -4,11 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <random>
 #include <system_error>
+#include <vector>
 
 #include "numerics/files/zstd_stream.h"
 
@@ -171,6 +173,26 @@ OutputFile::OutputFile(const fs::path& target, Start start) : packed_(target.ext
 
 void OutputFile::write(const void* data, std::size_t bytes) {
   if (bytes != 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes) fail();
+}
+
+void OutputFile::append_file(int descriptor, std::uint64_t bytes) {
+  if (std::fflush(file_.get()) != 0) fail();
+  off_t from = 0;
+  ssize_t copied = 1;
+  while (bytes > 0 && copied > 0) {  // the system copies it, where the file system lets it
+    copied = ::copy_file_range(descriptor, &from, ::fileno(file_.get()), nullptr, bytes, 0);
+    bytes -= copied > 0 ? static_cast<std::uint64_t>(copied) : 0;
+  }
+  if (::fseeko(file_.get(), 0, SEEK_END) != 0) fail();
+  std::vector<char> block(std::min<std::uint64_t>(bytes, std::uint64_t{1} << 16));
+  while (bytes > 0) {
+    const ssize_t read =
+        ::pread(descriptor, block.data(), std::min<std::uint64_t>(bytes, block.size()), from);
+    if (read <= 0) fail();
+    write(block.data(), static_cast<std::size_t>(read));
+    from += read;
+    bytes -= static_cast<std::uint64_t>(read);
+  }
 }
 
 void OutputFile::seek(std::int64_t offset) {

@@ -74,6 +74,8 @@ class OutputFile {
 
   // Appends bytes. Throws WorkError when the disk is full.
   void write(const void* data, std::size_t bytes);
+  // Appends the first `bytes` of a file that this process has open. Throws WorkError when the disk is full.
+  void append_file(int descriptor, std::uint64_t bytes);
   // Moves to `offset` bytes from the start, for formats whose header states counts that are known only at the
   // end.
   void seek(std::int64_t offset);

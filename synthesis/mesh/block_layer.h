@@ -56,6 +56,7 @@ class LayerIndex {
         numbers_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kAbsent) {}
 
   void set(int x, int y, std::int32_t number) { numbers_[slot(x, y)] = number; }
+  void unset(int x, int y) { set(x, y, kAbsent); }
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool has(int x, int y) const { return contains(x, y) && numbers_[slot(x, y)] != kAbsent; }
   // The number of the block at x, y, which must be active.
@@ -79,6 +80,11 @@ class BlockLayer {
   void add(int x, int y) {
     index_.set(x, y, static_cast<std::int32_t>(blocks.size()));
     blocks.emplace_back(x, y);
+  }
+  // Takes all blocks out again, but keeps their memory for the next ones.
+  void clear() {
+    for (const LayerBlock<B>& block : blocks) index_.unset(block.x, block.y);
+    blocks.clear();
   }
 
   bool contains(int x, int y) const { return index_.contains(x, y); }

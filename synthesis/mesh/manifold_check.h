@@ -3,12 +3,14 @@
 // batches, however large the mesh is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "geometry/mesh_sink.h"
+#include "numerics/unset_vector.h"
 
 namespace astrolith {
 
@@ -43,28 +45,45 @@ class ManifoldCheck : public MeshSink {
  private:
   // The link of a vertex: the edges opposite to it in its triangles. Few vertices have more than eight; the
   // edges of these beyond the eighth are in `others_`.
-  struct Link {
+  struct alignas(64) Link {
     std::array<OppositeEdge, 8> edges;
+  };
+  // The links of a batch of vertices, first .. first + counts.size() - 1.
+  struct Batch {
+    std::uint32_t first = 0;
+    UnsetVector<Link> links;
+    std::vector<std::uint32_t> counts;  // of the edges of each link
   };
   struct OtherEdge {
     std::uint32_t vertex;
     OppositeEdge edge;
   };
+  // Vertices whose links one thread extends.
+  struct Range {
+    std::uint32_t first, end;
+    std::vector<OtherEdge> others;
+  };
+  // Some triangles that follow one another, and the least and the greatest vertex that they name.
+  struct Chunk {
+    std::span<const Triangle> triangles;
+    std::uint32_t least, greatest;
+  };
 
-  void add_to_link(std::uint32_t vertex, OppositeEdge edge);
-  void settle(std::uint32_t end);
+  bool is_late(const Triangle& t) const { return std::min({t[0], t[1], t[2]}) < before_.first; }
+  std::vector<Chunk> chunks_of(std::span<const Triangle> triangles) const;
+  void extend_links(const std::vector<Chunk>& chunks);
+  void extend_links_of(Range& range, const std::vector<Chunk>& chunks);
+  void add_to_link(std::uint32_t vertex, OppositeEdge edge, std::vector<OtherEdge>& others);
+  void unite_corners(const std::vector<Chunk>& chunks);
+  void settle_before();
   std::uint32_t root(std::uint32_t vertex);
   void unite(std::uint32_t a, std::uint32_t b);
   void forget_components_below(std::uint32_t first);
 
-  std::uint32_t window_first_ = 0;  // first vertex of the batch before the last
-  std::uint32_t batch_first_ = 0;   // first vertex of the last batch
-  std::uint32_t end_ = 0;           // number of vertices so far
-  // The next three hold the vertices from window_first_ on.
-  std::vector<Link> links_;
-  std::vector<std::uint32_t> counts_;  // of the edges of each link
-  std::vector<std::uint32_t> parent_;  // union-find
-  std::vector<OtherEdge> others_;
+  Batch before_, last_;                // the window
+  std::uint32_t end_ = 0;              // number of vertices so far
+  std::vector<OtherEdge> others_;      // of the window
+  std::vector<std::uint32_t> parent_;  // union-find over the window
   ManifoldReport report_;
 };
 

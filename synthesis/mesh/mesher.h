@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "geometry/mesh_sink.h"
 #include "numerics/progress.h"
+#include "numerics/unset_vector.h"
 #include "synthesis/mesh/block_culling.h"
 #include "synthesis/mesh/block_layer.h"
 #include "synthesis/mesh/block_polygons.h"
@@ -80,13 +82,12 @@ class LayeredMesher {
 
   MeshStatistics run(const Progress& progress) {
     const auto [first, end] = layers_of_window(grid_);
-    const BlockLayer<B> nothing(grid_.blocks(0), grid_.blocks(1));
-    BlockLayer<B> two_below = nothing, below = nothing;
+    BlockLayer<B> two_below(grid_.blocks(0), grid_.blocks(1)), below = two_below, layer = two_below;
     for (int z = first; z < end; ++z) {
-      BlockLayer<B> layer = make_layer(z, below);
+      make_layer(z, below, layer);
       if (z > first) check_open_sides(grid_, z - 1, below, z > first + 1 ? &two_below : nullptr, &layer);
-      two_below = std::move(below);
-      below = std::move(layer);
+      std::swap(two_below, below);
+      std::swap(below, layer);
       if (!report(progress, double(z + 1 - first) / (end - first),
                   std::to_string(statistics_.triangles) + " triangles")) {
         throw WorkError("mesher: stopped before the mesh was complete");
@@ -102,9 +103,9 @@ class LayeredMesher {
 
   Box whole_box() const { return grid_.samples.box({0, 0, 0}, grid_.samples.cells, grid_.samples.step); }
 
-  BlockLayer<B> make_layer(int z, const BlockLayer<B>& below) {
+  void make_layer(int z, const BlockLayer<B>& below, BlockLayer<B>& layer) {
     const Blocks active = mixed_blocks(grid_, whole_, z);
-    BlockLayer<B> layer(grid_.blocks(0), grid_.blocks(1));
+    layer.clear();
     layer.blocks.reserve(active.size());
     for (const auto& node : active) layer.add(node.x, node.y);
     statistics_.active_blocks += static_cast<std::int64_t>(active.size());
@@ -114,14 +115,10 @@ class LayeredMesher {
     emit_triangles(z, counts, below, layer);
     statistics_.vertices += counts.vertices;
     statistics_.triangles += counts.triangles;
-    return layer;
   }
 
   // Gives the vertices and triangles of the last layer to the sink.
-  void pass_on() {
-    sink_.add_vertices(vertices_);
-    sink_.add_triangles(triangles_);
-  }
+  void pass_on() { sink_.add_batch(vertices_, triangles_); }
 
   // Calls body(i) for every block in parallel and adds up the counts it returns.
   template <typename Body>
@@ -180,8 +177,8 @@ class LayeredMesher {
   MeshSink& sink_;
   MeshStatistics statistics_;
   // Vertices and triangles of the current layer; the vectors are kept for their memory.
-  std::vector<MeshVertex> vertices_;
-  std::vector<Triangle> triangles_;
+  UnsetVector<MeshVertex> vertices_;
+  UnsetVector<Triangle> triangles_;
 };
 
 // Cells along the side of a block. The samples of a block of 8^3 cells fit into the first-level cache.

@@ -24,8 +24,8 @@ class RecordedMesh : public MeshSink {
   void replay(MeshSink& sink) const {
     Batch before;
     for (const Batch& end : batches_) {
-      sink.add_vertices(std::span(vertices).subspan(before.vertices, end.vertices - before.vertices));
-      sink.add_triangles(std::span(triangles).subspan(before.triangles, end.triangles - before.triangles));
+      sink.add_batch(std::span(vertices).subspan(before.vertices, end.vertices - before.vertices),
+                     std::span(triangles).subspan(before.triangles, end.triangles - before.triangles));
       before = end;
     }
   }

@@ -1,4 +1,5 @@
-// What a mesh costs behind the mesher: its check and its file. A mesh is recorded once, and replayed.
+// What a mesh costs: the mesher alone, on a GPU too where there is one, and what follows it, its check and its
+// file. For these a mesh is recorded once, and replayed.
 //   sinks_benchmark RECIPE RESOLUTION [FILE.ply]
 // Prints million triangles a second and processor seconds of the check alone, the file alone, and both.
 #include <chrono>
@@ -8,6 +9,8 @@
 #include <filesystem>
 #include <string>
 
+#include "cuda/device.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/mesh/manifold_check.h"
@@ -50,6 +53,12 @@ int main(int argc, char** argv) {
     sink.finish();
   };
   for (int round = 0; round < 3; ++round) {
+    MeshDiscard nowhere;
+    time("mesher", triangles, [&] { mesh_field(field, field.bounds(), std::atoi(argv[2]), nowhere); });
+    if (probe_device().usable) {
+      time("mesher on GPU", triangles,
+           [&] { mesh_field_on_gpu(field, field.bounds(), std::atoi(argv[2]), nowhere); });
+    }
     time("check", triangles, check);
     time("file", triangles, write);
     time("both", triangles, [&] {

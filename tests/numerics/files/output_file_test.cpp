@@ -202,6 +202,23 @@ TEST_F(OutputFileTest, ALinkIsWrittenThrough) {
   EXPECT_THROW(OutputFile(folder / "ring"), InputError);
 }
 
+TEST_F(OutputFileTest, AppendsThePartOfAnotherFile) {
+  const std::string text(200000, 'x');
+  const FileHandle other = open_nameless_file(folder / "joined");
+  ASSERT_EQ(std::fwrite(text.data(), 1, text.size(), other.get()), text.size());
+  ASSERT_EQ(std::fflush(other.get()), 0);
+  OutputFile file(folder / "joined");
+  file.write("before", 6);
+  file.append_file(::fileno(other.get()), text.size() - 1);
+  file.write("after", 5);
+  EXPECT_THROW(file.append_file(::fileno(other.get()), text.size() + 1), WorkError);
+  file.seek(0);
+  file.write("BEFORE", 6);
+  file.commit();
+  EXPECT_EQ(testing::text_of(folder / "joined").substr(0, text.size() + 10),
+            "BEFORE" + text.substr(1) + "after");
+}
+
 TEST_F(OutputFileTest, AFileKeepsItsMode) {
   for (const OutputFile::Start start : {OutputFile::Start::kNameless, OutputFile::Start::kNamed}) {
     write_file(folder / "mode", start);
