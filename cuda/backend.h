@@ -19,7 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "numerics/errors.h"
+#include "cuda/device.h"
 #include "numerics/host_device.h"
 
 namespace astrolith {
@@ -28,9 +28,9 @@ namespace astrolith {
 inline constexpr std::size_t kSharedBytes = 48 * 1024;
 
 // An array does not fit into the memory of a backend. A smaller batch of work may fit.
-class OutOfDeviceMemory : public WorkError {
+class OutOfDeviceMemory : public DeviceError {
  public:
-  using WorkError::WorkError;
+  using DeviceError::DeviceError;
 };
 
 // Adds to a number to which other threads add at the same time. Returns the number before the addition.

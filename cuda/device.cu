@@ -13,8 +13,7 @@ constexpr int kProbeSize = 1024;
 
 // A value at i that uses every elementary function of the field and of its bounds.
 struct Probe {
-  std::int32_t single;
-  std::int64_t wide;
+  std::int64_t single, wide;  // of equal size, so that no byte between them is left unset
 };
 ASTROLITH_HD Probe probe_value(std::uint32_t i) {
   const float x = 20.0f * unit_float(hash_cell(hash_seed(7, 1), static_cast<std::int32_t>(i), 2, 3)) - 10.0f;
@@ -43,9 +42,7 @@ bool device_agrees_with_host() {
   return true;
 }
 
-}  // namespace
-
-DeviceStatus probe_device() {
+DeviceStatus look_at_device() {
   DeviceStatus status;
   int count = 0;
   const cudaError_t found = cudaGetDeviceCount(&count);
@@ -70,6 +67,13 @@ DeviceStatus probe_device() {
   } catch (const WorkError& e) {
     status.reason = e.what();
   }
+  return status;
+}
+
+}  // namespace
+
+const DeviceStatus& probe_device() {
+  static const DeviceStatus status = look_at_device();
   return status;
 }
 

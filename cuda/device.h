@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "numerics/errors.h"
+
 namespace astrolith {
 
 struct DeviceStatus {
@@ -14,8 +16,14 @@ struct DeviceStatus {
   std::size_t memory_bytes = 0;
 };
 
-// Looks at device 0 and runs a small kernel whose results are known bit by bit. Code built for the wrong
-// architecture must fail here, and not give a mesh of zeros later. Throws nothing.
-DeviceStatus probe_device();
+// What CUDA says where the device fails or has too little memory. The CPU can do the work from its beginning.
+class DeviceError : public WorkError {
+ public:
+  using WorkError::WorkError;
+};
+
+// Looks, once, at device 0 and runs a small kernel whose results are known bit by bit. Code built for the
+// wrong architecture must fail here, and not give a mesh of zeros later. Throws nothing.
+const DeviceStatus& probe_device();
 
 }  // namespace astrolith

@@ -50,6 +50,8 @@ class DeviceBackend {
  public:
   template <typename T>
   using Array = DeviceBuffer<T>;
+  template <typename T>
+  using HostArray = PinnedBuffer<T>;
 
   template <typename T>
   Array<T> allocate(std::size_t count) {

@@ -4,6 +4,8 @@
 #include <cuda_runtime.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,14 +15,29 @@
 
 namespace astrolith {
 
-// Throws WorkError with CUDA's own words where `status` is an error. For an error of memory it throws
+// Throws DeviceError with CUDA's own words where `status` is an error. For an error of memory it throws
 // OutOfDeviceMemory, after which the device can still be used.
 inline void check_cuda(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   const std::string words = std::string("GPU: ") + what + ": " + cudaGetErrorString(status);
-  if (status != cudaErrorMemoryAllocation) throw WorkError(words);
+  if (status != cudaErrorMemoryAllocation) throw DeviceError(words);
   cudaGetLastError();  // the error is no longer pending
   throw OutOfDeviceMemory(words);
+}
+
+// Whether device 0 keeps freed memory in a pool for what is allocated next, which spares the driver's work.
+inline bool has_memory_pool() {
+  static const bool has = [] {
+    int supported = 0;
+    cudaMemPool_t pool = nullptr;
+    std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+    const bool kept = cudaDeviceGetAttribute(&supported, cudaDevAttrMemoryPoolsSupported, 0) == cudaSuccess &&
+                      supported != 0 && cudaDeviceGetDefaultMemPool(&pool, 0) == cudaSuccess &&
+                      cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &most) == cudaSuccess;
+    cudaGetLastError();  // an error here only means that there is no pool
+    return kept;
+  }();
+  return has;
 }
 
 // An array of plain structs on the device; freed with the object.
@@ -29,7 +46,12 @@ class DeviceBuffer {
  public:
   DeviceBuffer() = default;
   explicit DeviceBuffer(std::size_t count) : count_(count) {
-    if (count != 0) check_cuda(cudaMalloc(&data_, count * sizeof(T)), "allocating memory");
+    if (count == 0) return;
+    void* data = nullptr;
+    check_cuda(has_memory_pool() ? cudaMallocAsync(&data, count * sizeof(T), nullptr)
+                                 : cudaMalloc(&data, count * sizeof(T)),
+               "allocating memory");
+    data_ = static_cast<T*>(data);
   }
   explicit DeviceBuffer(std::span<const T> host) : DeviceBuffer(host.size()) {
     if (count_ != 0) {
@@ -46,7 +68,13 @@ class DeviceBuffer {
     std::swap(count_, other.count_);
     return *this;
   }
-  ~DeviceBuffer() { cudaFree(data_); }
+  ~DeviceBuffer() {
+    if (data_ != nullptr && has_memory_pool()) {
+      cudaFreeAsync(data_, nullptr);
+    } else {
+      cudaFree(data_);
+    }
+  }
 
   // Copies the first host.size() elements to the host.
   void download(std::span<T> host) const {
@@ -62,6 +90,39 @@ class DeviceBuffer {
  private:
   T* data_ = nullptr;
   std::size_t count_ = 0;
+};
+
+// An array of plain structs on the host that the device copies into at the full rate of the bus. It keeps its
+// memory when it shrinks; its content is arbitrary after it has grown.
+template <typename T>
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  PinnedBuffer(PinnedBuffer&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), most_(std::exchange(other.most_, 0)) {}
+  PinnedBuffer& operator=(PinnedBuffer&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(most_, other.most_);
+    return *this;
+  }
+  ~PinnedBuffer() { cudaFreeHost(data_); }
+
+  void resize(std::size_t count) {
+    if (count <= most_) return;
+    cudaFreeHost(std::exchange(data_, nullptr));
+    most_ = 0;
+    void* data = nullptr;
+    const std::size_t most = count + count / 4;
+    check_cuda(cudaMallocHost(&data, most * sizeof(T)), "allocating memory of the host");
+    data_ = static_cast<T*>(data);
+    most_ = most;
+  }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t most_ = 0;  // elements that the memory holds
 };
 
 }  // namespace astrolith

@@ -8,6 +8,7 @@
 
 #include "cuda/mesher/batch_mesher.h"
 #include "cuda/mesher/gathered_lists.h"
+#include "numerics/parallel_for.h"
 #include "synthesis/field/implicit_field.h"
 
 namespace astrolith {
@@ -30,12 +31,13 @@ class BackendMesher {
   MeshStatistics run(const Progress& progress) {
     const LayerRange range = layers_of_window(grid_);
     for (int done = range.first; done < range.end;) {
-      done += next_batch(done, range.end);
+      done += batch_beside_sink(done, range.end);
       if (!report(progress, double(done - range.first) / (range.end - range.first),
                   std::to_string(statistics_.triangles) + " triangles")) {
         throw WorkError("mesher: stopped before the mesh was complete");
       }
     }
+    pour(made_);
     return statistics_;
   }
 
@@ -43,6 +45,21 @@ class BackendMesher {
   template <typename T>
   using Array = typename Backend::template Array<T>;
   static constexpr std::size_t kMostBlocks = 32768;  // the most blocks of a batch: 400 MB
+
+  // Meshes a batch of layers from `first` on, while the sink receives the batch before it. Returns the number
+  // of layers.
+  int batch_beside_sink(int first, int end) {
+    std::swap(made_, before_);
+    int layers = 0;
+    parallel_for(0, 2, [&](std::int64_t i) {
+      if (i == 0) {
+        layers = next_batch(first, end);
+      } else {
+        pour(before_);
+      }
+    });
+    return layers;
+  }
 
   // Meshes a batch of layers from `first` on and returns their number. Where memory ends, it tries half as
   // many.
@@ -55,8 +72,7 @@ class BackendMesher {
         return layers;
       } catch (const OutOfDeviceMemory&) {
         if (wanted == 1) {
-          throw WorkError(
-              "GPU: too little memory for one layer of blocks; lower the resolution or use the CPU");
+          throw DeviceError("GPU: too little memory for one layer of blocks");
         }
         layers_at_once_ = wanted / 2;
         most_blocks_ = std::max<std::size_t>(most_blocks_ / 2, 1);
@@ -71,7 +87,7 @@ class BackendMesher {
   }
 
   // Meshes at most `wanted` layers with at most most_blocks_ blocks, but at least one layer; returns their
-  // number. Where it throws OutOfDeviceMemory, the mesher and the sink are as before.
+  // number. Where it throws OutOfDeviceMemory, the mesher is as before.
   int mesh_layers(int first_z, int wanted) {
     auto failure = zeros_on<std::uint32_t>(backend_, 1);
     const CulledBlocks<Backend> culled = culler_.cull(first_z, wanted, failure);
@@ -90,7 +106,6 @@ class BackendMesher {
     for (const auto& layer : columns) sizes.push_back(layer.size());
     BatchMesher<Backend>(backend_, batch, places, kept_, failure)
         .mesh(sizes, static_cast<std::uint32_t>(statistics_.vertices), made_);
-    pour();
     add_up(places.size());
     kept_ = std::move(last);
     return static_cast<int>(columns.size());
@@ -107,14 +122,12 @@ class BackendMesher {
     return columns;
   }
 
-  // Hands the mesh of the batch to the sink, layer by layer.
-  void pour() {
-    for (std::size_t l = 0; l + 1 < made_.first_vertex.size(); ++l) {
-      const std::uint32_t v = made_.first_vertex[l], t = made_.first_triangle[l];
-      sink_.add_vertices(
-          std::span<const MeshVertex>(made_.vertices).subspan(v, made_.first_vertex[l + 1] - v));
-      sink_.add_triangles(
-          std::span<const Triangle>(made_.triangles).subspan(t, made_.first_triangle[l + 1] - t));
+  // Hands the mesh of a batch to the sink, layer by layer.
+  void pour(const MeshedLayers<Backend>& made) {
+    for (std::size_t l = 0; l + 1 < made.first_vertex.size(); ++l) {
+      const std::uint32_t v = made.first_vertex[l], t = made.first_triangle[l];
+      sink_.add_batch({made.vertices.data() + v, made.first_vertex[l + 1] - v},
+                      {made.triangles.data() + t, made.first_triangle[l + 1] - t});
     }
   }
 
@@ -136,7 +149,7 @@ class BackendMesher {
   int layers_at_once_ = 8;
   std::size_t most_blocks_ = kMostBlocks;
   KeptLayer<Backend> kept_;
-  MeshedLayers made_;  // mesh of the last batch; a member so that its memory is used again
+  MeshedLayers<Backend> made_, before_;  // meshes of the last two batches, whose memory is used again
 };
 
 // mesh_field (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field for which

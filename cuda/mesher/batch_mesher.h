@@ -8,9 +8,10 @@
 namespace astrolith {
 
 // The vertices and triangles of some layers, and where those of each layer begin.
+template <class Backend>
 struct MeshedLayers {
-  std::vector<MeshVertex> vertices;
-  std::vector<Triangle> triangles;
+  typename Backend::template HostArray<MeshVertex> vertices;
+  typename Backend::template HostArray<Triangle> triangles;
   std::vector<std::uint32_t> first_vertex, first_triangle;  // (layers + 1)
   std::uint64_t evaluations = 0, cut_vertices = 0;
 };
@@ -51,7 +52,8 @@ class BatchMesher {
 
   // `layer_sizes` are numbers of blocks. The first vertex gets the number `first_number`. Throws what the
   // CPU's mesher throws, and OutOfDeviceMemory.
-  void mesh(std::span<const std::size_t> layer_sizes, std::uint32_t first_number, MeshedLayers& out) {
+  void mesh(std::span<const std::size_t> layer_sizes, std::uint32_t first_number,
+            MeshedLayers<Backend>& out) {
     auto counters = zeros_on<std::uint64_t>(backend_, 2);  // evaluations, cut vertices
     sample(counters);
     check_sides();
@@ -76,7 +78,7 @@ class BatchMesher {
     const auto band = static_cast<float>(kSampleBand * batch_.grid.samples.step);
     backend_.launch_groups("evaluating samples", n_, EvaluateSamples::kThreads,
                            EvaluateSamples{batch_, band});
-    backend_.launch("filling the halo of samples", n_ * MeshBlock::kSamples, FillSampleHalo{batch_});
+    backend_.launch("filling the halo of samples", n_ * HaloThread::kSamples, FillSampleHalo{batch_});
     backend_.launch("taking signs", n_ * TakeSigns::kRows, TakeSigns{batch_});
   }
 
@@ -96,7 +98,7 @@ class BatchMesher {
   }
 
   void pick_starts(std::span<const std::size_t> layer_sizes, const Array<std::uint32_t>& vertex_rows,
-                   const Array<std::uint32_t>& triangle_rows, MeshedLayers& out) {
+                   const Array<std::uint32_t>& triangle_rows, MeshedLayers<Backend>& out) {
     std::vector<std::uint32_t> rows{0};
     for (const std::size_t size : layer_sizes) {
       rows.push_back(rows.back() + static_cast<std::uint32_t>(MeshBatch::kRows * size));
@@ -114,7 +116,7 @@ class BatchMesher {
   }
 
   void emit(const Array<std::uint32_t>& vertex_rows, const Array<std::uint32_t>& triangle_rows,
-            std::uint32_t first_number, MeshedLayers& out) {
+            std::uint32_t first_number, MeshedLayers<Backend>& out) {
     const std::size_t num_vertices = out.first_vertex.back(), num_triangles = out.first_triangle.back();
     if (first_number + num_vertices > std::numeric_limits<std::uint32_t>::max()) {
       throw WorkError("mesher: more than 2^32 vertices; lower the resolution");
@@ -126,13 +128,13 @@ class BatchMesher {
     backend_.launch_groups("taking normals", n_, TakeNormals::kThreads,
                            TakeNormals{batch_, static_cast<float>(0.25 * batch_.grid.samples.step),
                                        vertex_rows.data(), vertices.data()});
-    backend_.launch("filling the halo of vertices", n_ * MeshBlock::kSamples, FillVertexHalo{batch_});
+    backend_.launch("filling the halo of vertices", n_ * HaloThread::kSamples, FillVertexHalo{batch_});
     backend_.launch("making triangles", n_ * MeshBatch::kRows,
                     MakeTriangles{batch_, triangle_rows.data(), triangles.data()});
     out.vertices.resize(num_vertices);
     out.triangles.resize(num_triangles);
-    backend_.download(vertices, std::span(out.vertices));
-    backend_.download(triangles, std::span(out.triangles));
+    backend_.download(vertices, std::span<MeshVertex>(out.vertices.data(), num_vertices));
+    backend_.download(triangles, std::span<Triangle>(out.triangles.data(), num_triangles));
     require_success();
   }
 

@@ -63,10 +63,13 @@ class BlockCuller {
   // The blocks of layers first_z .. first_z + count - 1. `failure` becomes MeshFailure::kBorder where the
   // body fills a block at the border of the grid.
   CulledBlocks<Backend> cull(int first_z, int count, Array<std::uint32_t>& failure) {
-    const auto longest = static_cast<unsigned>(std::max(grid_.blocks(0), grid_.blocks(1)));
-    const int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
+    const int size = root_size(count);
     std::vector<CullNode> roots;
-    for (int z = first_z; z < first_z + count; ++z) roots.push_back({0, 0, z, size});
+    for (int z = first_z; z < first_z + count; ++z) {
+      for (int y = 0; y < grid_.blocks(1); y += size) {
+        for (int x = 0; x < grid_.blocks(0); x += size) roots.push_back({x, y, z, size});
+      }
+    }
     Level level{backend_.upload(std::span<const CullNode>(roots)), {}, {}};
     narrow(CullNodes{nullptr, all_ranges_.data(), all_numbers_.data()},
            static_cast<std::uint32_t>(roots.size()), level);
@@ -75,6 +78,22 @@ class BlockCuller {
   }
 
  private:
+  // The size of the nodes that culling begins with: so small that they keep a GPU at work, but not so small
+  // that choosing their lists from all elements costs more than the levels above them.
+  int root_size(int layers) const {
+    constexpr double kMostRoots = 4096.0, kMostChoices = 1 << 24;
+    const auto longest = static_cast<unsigned>(std::max(grid_.blocks(0), grid_.blocks(1)));
+    int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
+    const auto roots = [&](int s) {
+      return double(layers) * ((grid_.blocks(0) + s - 1) / s) * ((grid_.blocks(1) + s - 1) / s);
+    };
+    while (size > 2 && roots(size / 2) <= kMostRoots &&
+           roots(size / 2) * double(all_numbers_.size()) <= kMostChoices) {
+      size /= 2;
+    }
+    return size;
+  }
+
   // The nodes of one level of the quadtrees, and their lists.
   struct Level {
     Array<CullNode> nodes;
@@ -90,7 +109,8 @@ class BlockCuller {
     const std::size_t lists = level.nodes.size() * lists_.count();
     auto narrowed = write_lists<std::uint32_t>(
         backend_, "narrowing lists", lists,
-        NarrowLists{field_, grid_, lists_, wide_margin_, level.nodes.data(), parents, nodes_a_parent});
+        NarrowLists{field_, grid_, lists_, wide_margin_, level.nodes.data(), parents, nodes_a_parent},
+        shares_of(lists));
     level.ranges = backend_.template allocate<ListRange>(lists);
     backend_.launch("finding lists", lists, MakeRanges{narrowed.first.data(), level.ranges.data()});
     level.numbers = std::move(narrowed.items);

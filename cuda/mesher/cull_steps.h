@@ -89,13 +89,15 @@ struct NarrowLists {
     return metaball_reaches(leaf, field.arrays[leaf.spheres][number], box);
   }
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare share, Writer& write) const {
     const std::size_t n = i / lists.count();
     const auto list = static_cast<std::uint32_t>(i % lists.count());
     if (nodes[n].size == 0) return;
     const Box box = box_of(nodes[n], list);
     const ListRange of_parent = parents.ranges[n / nodes_a_parent * lists.count() + list];
-    for (std::uint32_t k = of_parent.first; k < of_parent.first + of_parent.count; ++k) {
+    const auto begin = of_parent.first + static_cast<std::uint32_t>(share.begin(of_parent.count)),
+               end = of_parent.first + static_cast<std::uint32_t>(share.end(of_parent.count));
+    for (std::uint32_t k = begin; k < end; ++k) {
       if (reaches(list, parents.numbers[k], box)) write(parents.numbers[k]);
     }
   }

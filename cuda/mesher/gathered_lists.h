@@ -30,7 +30,7 @@ struct GatherMetaballs {
   std::uint32_t first_list;
 
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare, Writer& write) const {
     const std::size_t leaf = i % from.lists.leaves;
     const ListRange range = from.range(i / from.lists.leaves, first_list + leaf);
     const MetaballSphere<float>* spheres =
@@ -46,7 +46,7 @@ struct GatherLandforms {
   GatherFrom from;
 
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare, Writer& write) const {
     const ListRange range =
         from.range(i / from.lists.landforms, from.lists.leaves + i % from.lists.landforms);
     for (std::uint32_t k = range.first; k < range.first + range.count; ++k) write(from.blocks.numbers[k]);
@@ -58,7 +58,7 @@ struct GatherSpots {
   GatherFrom from;
 
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare, Writer& write) const {
     const std::uint32_t lists = from.field.spot_lists.count;
     gather_spots(from.field, static_cast<std::uint32_t>(i % lists), from.box(i / lists), write);
   }
@@ -70,10 +70,11 @@ struct GatherGabor {
   LeafLists metaballs;  // the wide lists of all blocks
 
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare share, Writer& write) const {
     const std::uint32_t lists = from.field.gabor_lists.count;
     const LeafLists of_block{metaballs.spheres, metaballs.first + i / lists * from.lists.leaves};
-    gather_gabor(from.field, static_cast<std::uint32_t>(i % lists), of_block, from.box(i / lists), write);
+    gather_gabor(from.field, static_cast<std::uint32_t>(i % lists), of_block, from.box(i / lists), write,
+                 share);
   }
 };
 
@@ -118,7 +119,8 @@ class GatheredLists {
         write_lists<MetaballSphere<float>>(backend, "gathering metaballs", count * leaves_,
                                            GatherMetaballs{from, from.lists.leaves + from.lists.landforms});
     return write_lists<GaborImpulse>(backend, "gathering Gabor impulses", count * gabor_lists_,
-                                     GatherGabor{from, {wide.items.data(), wide.first.data()}});
+                                     GatherGabor{from, {wide.items.data(), wide.first.data()}},
+                                     shares_of(count * gabor_lists_));
   }
 
   std::uint32_t leaves_, spot_lists_, gabor_lists_, landform_lists_;

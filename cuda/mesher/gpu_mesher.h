@@ -10,12 +10,12 @@
 namespace astrolith {
 
 // The reason why the field cannot be meshed on a GPU in blocks with sides of `block_side` (length units), in
-// a few words ("masks by more than four layers at a time"). Empty if it can.
+// a few words ("masks by more than 16 layers at a time"). Empty if it can.
 std::string obstacle_on_gpu(const FieldView& field, double block_side);
 
 // Expects a field for which obstacle_on_gpu() is empty. Throws what mesh_field throws, and
-// WorkError, with CUDA's words, when the device fails or has too little memory for one layer of blocks. Call
-// probe_device() (cuda/device.h) first.
+// DeviceError, with CUDA's words, when the device fails or has too little memory for one layer of blocks.
+// Call probe_device() (cuda/device.h) first.
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,
                                  MeshSink& sink, const Progress& progress = {}, MeshTile tile = {});
 

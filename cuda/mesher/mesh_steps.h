@@ -49,6 +49,27 @@ struct SampleThread {
     z = sample / (MeshBlock::kSide * MeshBlock::kSide);
   }
 };
+// The block and the local coordinates of the sample of a thread, one for each sample of the halo: those whose
+// z is 0, then those of the others whose y is 0, then those of the others whose x is 0.
+struct HaloThread {
+  static constexpr std::size_t kSide = MeshBlock::kSide, kCells = kBlockCells;
+  static constexpr std::size_t kSamples = kSide * kSide + kSide * kCells + kCells * kCells;
+  std::size_t block;
+  int x, y, z;
+
+  ASTROLITH_HD explicit HaloThread(std::size_t thread) : block(thread / kSamples) {
+    std::size_t at = thread % kSamples;
+    const bool below = at < kSide * kSide;
+    at -= below ? 0 : kSide * kSide;
+    const bool in_front = !below && at < kSide * kCells;
+    at -= below || in_front ? 0 : kSide * kCells;
+    const std::size_t row = at / (below || in_front ? kSide : kCells),
+                      along = at % (below || in_front ? kSide : kCells);
+    x = below || in_front ? static_cast<int>(along) : 0;
+    y = below ? static_cast<int>(row) : in_front ? 0 : static_cast<int>(along) + 1;
+    z = below ? 0 : static_cast<int>(row) + 1;
+  }
+};
 struct RowThread {
   std::size_t block;
   int y, z;
@@ -85,8 +106,7 @@ struct FillSampleHalo {
   MeshBatch batch;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
-    const SampleThread t(thread);
-    if (owner_of(t.x, t.y, t.z) == 0) return;
+    const HaloThread t(thread);
     fill_halo_sample(batch.owners(t.block), t.x, t.y, t.z, batch.blocks[t.block]);
   }
 };
@@ -162,8 +182,7 @@ struct FillVertexHalo {
   MeshBatch batch;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
-    const SampleThread t(thread);
-    if (owner_of(t.x, t.y, t.z) == 0) return;
+    const HaloThread t(thread);
     const bool found = fill_halo_vertices(batch.owners(t.block), batch.window(t.block), t.x, t.y, t.z,
                                           batch.blocks[t.block]);
     if (!found) batch.fail(MeshFailure::kMissingBlock);

@@ -9,7 +9,7 @@ namespace astrolith {
 // The most layers whose heights can be kept for masks at a time where a point is evaluated by itself. The
 // functions here expect FieldView::num_kept_heights not to exceed it; obstacle_on_gpu()
 // (cuda/mesher/gpu_mesher.h) checks.
-inline constexpr std::uint32_t kMostKeptHeights = 4;
+inline constexpr std::uint32_t kMostKeptHeights = 16;
 
 // The state of a point after the layers that were applied so far.
 struct FieldState {

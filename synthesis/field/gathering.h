@@ -68,24 +68,45 @@ ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least,
   return out;
 }
 
-// Visits the cells of a band whose impulses may reach a box. Cells come brick by brick, because the CPU keeps
-// impulses in bricks (synthesis/gabor/gabor_bricks.h) and adds kernels in this order.
-template <class Visit>
-ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Visit& visit) {
+// All cells of a band around a box.
+struct AllCells {
+  ASTROLITH_HD std::uint64_t begin(std::uint64_t) const { return 0; }
+  ASTROLITH_HD std::uint64_t end(std::uint64_t cells) const { return cells; }
+};
+
+// Visits the cells of a band whose impulses may reach a box, or a share of them: cells share.begin(n) to
+// share.end(n) - 1 of n. Cells come brick by brick, because the CPU keeps impulses in bricks
+// (synthesis/gabor/gabor_bricks.h) and adds kernels in this order.
+template <class Share, class Visit>
+ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Share& share,
+                                      const Visit& visit) {
   GaborCellSpan cells[3], bricks[3];
   for (int a = 0; a < 3; ++a) {
     cells[a] = gabor_cells_around(band, a, box.low[a], box.high[a]);
     bricks[a] = {gabor_brick_of(cells[a].first), gabor_brick_of(cells[a].last)};
   }
+  const auto length = [](const GaborCellSpan& span) {
+    return static_cast<std::uint64_t>(std::max(span.last - span.first + 1, 0));
+  };
+  const std::uint64_t all = length(cells[0]) * length(cells[1]) * length(cells[2]);
+  const std::uint64_t begin = share.begin(all), end = share.end(all);
+  std::uint64_t at = 0;  // number of the next cell
   const auto visit_brick = [&](int tx, int ty, int tz) {
     const auto of_brick = [&](int a, int brick) {
       return GaborCellSpan{std::max(cells[a].first, brick * kBrickCells),
                            std::min(cells[a].last, brick * kBrickCells + kBrickCells - 1)};
     };
     const GaborCellSpan xs = of_brick(0, tx), ys = of_brick(1, ty), zs = of_brick(2, tz);
+    const std::uint64_t of_this = length(xs) * length(ys) * length(zs);
+    if (at + of_this <= begin || at >= end) {
+      at += of_this;
+      return;
+    }
     for (int z = zs.first; z <= zs.last; ++z) {
       for (int y = ys.first; y <= ys.last; ++y) {
-        for (int x = xs.first; x <= xs.last; ++x) visit(x, y, z);
+        for (int x = xs.first; x <= xs.last; ++x, ++at) {
+          if (at >= begin && at < end) visit(x, y, z);
+        }
       }
     }
   };
@@ -99,9 +120,10 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
 // Calls write(impulse) for the Gabor impulses of list number `list` that may reach the block. Impulses that
 // do not reach it may be among them; they add nothing. The frames of impulses follow from the body at the
 // centres of their cells, so `metaballs` must hold the metaballs that reach the cells around the block.
-template <class Write>
+// A share of them stands for that share of the cells.
+template <class Write, class Share = AllCells>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
-                               const Box& box, Write&& write) {
+                               const Box& box, Write&& write, const Share& share = {}) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
   const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
@@ -110,7 +132,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
   const auto write_reaching = [&](const GaborImpulse& impulse) {
     if (gabor_reaches(impulse, target)) write(impulse);
   };
-  for_each_gabor_cell(band, at, [&](int x, int y, int z) {
+  for_each_gabor_cell(band, at, share, [&](int x, int y, int z) {
     const BodyAtPoint s = unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(band, x, y, z));
     for_each_gabor_impulse(band, f.arrays[band.lobes], band.lobes.count, x, y, z, -s.distance, s.gradient,
                            write_reaching);

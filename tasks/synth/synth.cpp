@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -239,6 +240,7 @@ void check_members_of(const Job& job, const SynthOptions& options, const Recipe&
 
 void synthesize(Job& job, const SynthOptions& options) {
   check_outputs(job, options);
+  const std::future<void> start = options.body.mesh.device.start();
   const Recipe recipe = read_input(job, options);
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);

@@ -355,9 +355,16 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
   report_layers_left_out(job, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   if (!region.is_cut()) require_cameras_outside(job, request.preview, field);
-  const ChosenDevice chosen = request.device.choose(job, lacking_on_gpu(field, region, resolution));
+  ChosenDevice chosen = request.device.choose(job, lacking_on_gpu(field, region, resolution));
   const MeshPlan plan{request, recipe, file, region, field, resolution, output};
-  if (chosen || !(request.size.max_memory_gb > 0.0)) return make_files(job, plan, chosen);
+  if (chosen) {
+    try {
+      return make_files(job, plan, chosen);
+    } catch (const DeviceError& error) {
+      chosen = request.device.after_failure(job, error);
+    }
+  }
+  if (!(request.size.max_memory_gb > 0.0)) return make_files(job, plan, chosen);
   try {
     const MemoryGuard guard(memory_limit(request.size.max_memory_gb));
     make_files(job, plan, chosen);

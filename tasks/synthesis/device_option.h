@@ -1,6 +1,7 @@
 // --device: whether a program computes on the GPU.
 #pragma once
 
+#include <future>
 #include <string>
 
 #include "cuda/device.h"
@@ -29,6 +30,13 @@ struct DeviceOption {
         .check(one_of({"auto", "cpu", "cuda"}));
   }
 
+  // Looks at the device beside other work, since a GPU takes a quarter of a second to start. The future waits
+  // for it when it is destroyed.
+  std::future<void> start() const {
+    if (device == "cpu") return {};
+    return std::async(std::launch::async, [] { probe_device(); });
+  }
+
   // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
   // say why to those who gave --device or --summary. A GPU that cannot be trusted is named in a line of its
   // own. With "cuda", a GPU that is missing or cannot be trusted is an InputError. The summary states the
@@ -54,6 +62,15 @@ struct DeviceOption {
     const ChosenDevice chosen = choose(job);
     job.summary["device"] = "cpu";
     return chosen.gpu ? on_cpu(job, words) : chosen;
+  }
+
+  // The CPU in place of a GPU that failed in the middle of the work. Where --device asked for the GPU,
+  // `error` goes on.
+  ChosenDevice after_failure(Job& job, const DeviceError& error) const {
+    if (device == "cuda") throw;
+    job.note(std::string(error.what()) + "; the CPU does the work from its beginning");
+    job.summary["device"] = "cpu";
+    return on_cpu(job, error.what());
   }
 
  private:

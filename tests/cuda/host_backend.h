@@ -86,6 +86,9 @@ class HostBackend {
     std::shared_ptr<std::size_t> left_;
   };
 
+  template <typename T>
+  using HostArray = std::vector<T>;
+
   // The content of an array is arbitrary at first. Here it is a pattern that makes a wrong use visible.
   template <typename T>
   Array<T> allocate(std::size_t count) {
