@@ -80,13 +80,25 @@ void MeshEstimator::make_coarse(int cells) {
 ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, int count) {
   const FieldView& view = field_.tables();
   const double reach = has_impulses(view) ? std::max(coarse_step_, field_.height_bound()) : coarse_step_;
-  const ProbedMesh mesh{surface, grid_of(field_, region_, resolution).step, reach,
-                        view.gabor_lists.count > 0};
+  // The impulses of columns that were probed before have been drawn.
+  const bool twice = view.gabor_lists.count > 0 && count > most_probes_;
+  const ProbedMesh mesh{surface, grid_of(field_, region_, resolution).step, reach, twice};
   most_probes_ = std::max(most_probes_, count);
   const ProbeFigures figures =
       region_.is_patch ? probe_surface(PatchField(field_, region_.center, region_.axes), mesh, count)
                        : probe_surface(field_, mesh, count);
   evaluations_ += figures.evaluations;
+  last_ = {mesh.step, count, figures};
+  return figures;
+}
+
+// What `count` probes find, or what as many found at cells of nearly this size.
+ProbeFigures MeshEstimator::probe_or_known(const ProbedSurface& surface, int resolution, int count) {
+  constexpr double kNear = 0.05;
+  const double ratio = last_.step / grid_of(field_, region_, resolution).step;
+  if (region_.tile.count > 1 || last_.count < count || std::fabs(ratio - 1.0) > kNear) return probe(surface, resolution, count);
+  ProbeFigures figures = last_.figures;
+  for (double* of_area : {&figures.triangles, &figures.blocks, &figures.seconds}) *of_area *= ratio * ratio;
   return figures;
 }
 
@@ -123,7 +135,7 @@ MeshEstimate MeshEstimator::at(int resolution) {
   if (!surface.empty()) {
     const double wanted = double(resolution) * resolution / kCellsOfProbe;
     const int probes = std::clamp(int(wanted), kFewestProbes, kMostProbes);
-    const ProbeFigures of_area = probe(surface, resolution, probes);
+    const ProbeFigures of_area = probe_or_known(surface, resolution, probes);
     estimate.area = surface.area();
     estimate.triangles = estimate.area * of_area.triangles;
     estimate.blocks = estimate.area * of_area.blocks;

@@ -43,6 +43,7 @@ class MeshEstimator {
   void make_coarse(int cells);
   double step_at(int resolution) const;
   ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
+  ProbeFigures probe_or_known(const ProbedSurface& surface, int resolution, int count);
 
   const ImplicitField& field_;
   Region region_;
@@ -52,6 +53,12 @@ class MeshEstimator {
   double coarse_step_ = 0.0;
   double evaluations_ = 0.0;
   int most_probes_ = 0;
+  // The last probes, which stand for those of nearly the same cells.
+  struct Probed {
+    double step = 0.0;
+    int count = 0;
+    ProbeFigures figures;
+  } last_;
 };
 
 }  // namespace astrolith
