@@ -74,6 +74,22 @@ struct ReliefSums {
   float weight = 0.0f, code = 0.0f;
 };
 
+// The places of a tile around a point: four rows of four words, each kReliefTileSide after the one before.
+// The point lies (u, v) in [0, 1] beyond the second word of the second row.
+struct ReliefFootprint {
+  std::int32_t first;  // number of the first word
+  float u, v;
+};
+
+// The footprint of the point (u, v) in [0, kReliefCell], in spacings from the corner of its cell, on the tile
+// that begins at word number `tile`.
+ASTROLITH_KERNEL ReliefFootprint relief_footprint(std::int32_t tile, float u, float v) {
+  constexpr float kLast = static_cast<float>(kReliefCell - 1);
+  const float iu = math::clamp(math::floor(u), 0.0f, kLast), iv = math::clamp(math::floor(v), 0.0f, kLast);
+  return {tile + static_cast<std::int32_t>(iv) * kReliefTileSide + static_cast<std::int32_t>(iu), u - iu,
+          v - iv};
+}
+
 ASTROLITH_KERNEL void add_relief_row(const std::uint32_t* row, const CubicWeights& u, float v,
                                      ReliefSums& sums) {
   const auto add = [&](std::uint32_t word, float by) {
@@ -87,13 +103,9 @@ ASTROLITH_KERNEL void add_relief_row(const std::uint32_t* row, const CubicWeight
   add(row[3], u.w3 * v);
 }
 
-// Adds a tile to the sums at the point (u, v) in [0, kReliefCell], in spacings from the corner of its cell.
-ASTROLITH_KERNEL void add_relief_tile(const std::uint32_t* words, float u, float v, ReliefSums& sums) {
-  constexpr float kLast = static_cast<float>(kReliefCell - 1);
-  const float iu = math::clamp(math::floor(u), 0.0f, kLast), iv = math::clamp(math::floor(v), 0.0f, kLast);
-  const CubicWeights wu = cubic_weights(u - iu), wv = cubic_weights(v - iv);
-  const std::uint32_t* first =
-      words + static_cast<std::int32_t>(iv) * kReliefTileSide + static_cast<std::int32_t>(iu);
+// Adds the words of a footprint, of which `first` is the first, to the sums.
+ASTROLITH_KERNEL void add_relief_words(const std::uint32_t* first, float u, float v, ReliefSums& sums) {
+  const CubicWeights wu = cubic_weights(u), wv = cubic_weights(v);
   add_relief_row(first, wu, wv.w0, sums);
   add_relief_row(first + kReliefTileSide, wu, wv.w1, sums);
   add_relief_row(first + 2 * kReliefTileSide, wu, wv.w2, sums);
@@ -143,9 +155,13 @@ ASTROLITH_HD inline ReliefSums sums_in_lattice(const ReliefNoise& n, const std::
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{p.cell};
   const ReliefSplit* splits = arrays[n.splits];
   ReliefSums sums;
-  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[0], splits, p.y, p.z, p.x), p.y, p.z, sums);
-  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[1], splits, p.z, p.x, p.y), p.z, p.x, sums);
-  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[2], splits, p.x, p.y, p.z), p.x, p.y, sums);
+  const auto add = [&](std::int32_t tile, float u, float v, float w) {
+    const ReliefFootprint f = relief_footprint(kReliefTileSize * relief_tile(tile, splits, u, v, w), u, v);
+    add_relief_words(words + f.first, f.u, f.v, sums);
+  };
+  add(tiles[0], p.y, p.z, p.x);
+  add(tiles[1], p.z, p.x, p.y);
+  add(tiles[2], p.x, p.y, p.z);
   return sums;
 }
 
