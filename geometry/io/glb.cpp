@@ -78,16 +78,29 @@ LongitudeLatitude longitude_latitude(const TriangleMesh& mesh, const Vec3d& orig
   return result;
 }
 
+// A mesh of the file, as it is stored.
+struct StoredMesh {
+  const TriangleMesh& mesh;
+  std::optional<LongitudeLatitude> map;
+
+  // Those that are there twice counted twice.
+  std::uint64_t num_vertices() const { return map ? map->texcoords.size() : mesh.vertices.size(); }
+};
+
 class GlbDocument {
  public:
-  GlbDocument(const TriangleMesh& mesh, const std::optional<LongitudeLatitude>& map, const MeshFileInfo& info)
-      : mesh_(mesh), map_(map), num_vertices_(map ? map->texcoords.size() : mesh.vertices.size()) {
+  GlbDocument(std::span<const StoredMesh> levels, std::span<const double> coverage,
+              const MeshFileInfo& info) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
-    document_["nodes"] = Json::array({node(info)});
-    document_["materials"] = Json::array({material(mesh)});
-    add_arrays();
+    document_["nodes"] = Json::array();
+    document_["materials"] = Json::array({material(levels.front().mesh)});
+    for (const StoredMesh& level : levels) {
+      document_["nodes"].push_back(node(info, document_["nodes"].size()));
+      add_arrays(level);
+    }
+    if (levels.size() > 1) name_levels(levels.size(), coverage);
     document_["buffers"] = Json::array({{{"byteLength", num_bytes_}}});
   }
 
@@ -102,12 +115,24 @@ class GlbDocument {
   }
 
   // The node turns the body about x, so that +z up becomes +y up. Quaternions are (x y z w).
-  static Json node(const MeshFileInfo& info) {
+  static Json node(const MeshFileInfo& info, std::size_t level) {
     constexpr double kHalf = 0.70710678118654757;
     const double scale = metres_of(info.length_unit);
-    Json result = {{"mesh", 0}, {"name", "body"}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
+    const std::string name = level == 0 ? "body" : "body_lod" + std::to_string(level);
+    Json result = {{"mesh", level}, {"name", name}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
     result["scale"] = {scale, scale, scale};
     return result;
+  }
+
+  // The first node stands for all levels (MSFT_lod): engines show the others below these shares of the
+  // screen's height.
+  void name_levels(std::size_t levels, std::span<const double> coverage) {
+    document_["extensionsUsed"] = {"MSFT_lod"};
+    Json ids = Json::array();
+    for (std::size_t level = 1; level < levels; ++level) ids.push_back(level);
+    Json& first = document_["nodes"][0];
+    first["extensions"] = {{"MSFT_lod", {{"ids", ids}}}};
+    first["extras"] = {{"MSFT_screencoverage", coverage}};
   }
 
   // A material without shine; the default of glTF is fully metallic. Its colour multiplies those of the
@@ -120,23 +145,25 @@ class GlbDocument {
          {{"baseColorFactor", {base, base, base, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
   }
 
-  void add_arrays() {
-    const auto [low, high] = float_bounds(mesh_);
+  void add_arrays(const StoredMesh& level) {
+    const TriangleMesh& mesh = level.mesh;
+    const std::uint64_t vertices = level.num_vertices();
+    const auto [low, high] = float_bounds(mesh);
     Json attributes;
-    attributes["POSITION"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC3", 12);
+    attributes["POSITION"] = add_array(vertices, kArrayBuffer, kFloat, "VEC3", 12);
     document_["accessors"].back()["min"] = vector_json(low);
     document_["accessors"].back()["max"] = vector_json(high);
-    if (!mesh_.normals.empty()) {
-      attributes["NORMAL"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC3", 12);
+    if (!mesh.normals.empty()) {
+      attributes["NORMAL"] = add_array(vertices, kArrayBuffer, kFloat, "VEC3", 12);
     }
-    if (!mesh_.colors.empty()) {
-      attributes["COLOR_0"] = add_array(num_vertices_, kArrayBuffer, kUnsignedShort, "VEC4", 8);
+    if (!mesh.colors.empty()) {
+      attributes["COLOR_0"] = add_array(vertices, kArrayBuffer, kUnsignedShort, "VEC4", 8);
       document_["accessors"].back()["normalized"] = true;
     }
-    if (map_) attributes["TEXCOORD_0"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC2", 8);
-    const int indices = add_array(3 * mesh_.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
+    if (level.map) attributes["TEXCOORD_0"] = add_array(vertices, kArrayBuffer, kFloat, "VEC2", 8);
+    const int indices = add_array(3 * mesh.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
     const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
-    document_["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+    document_["meshes"].push_back({{"primitives", Json::array({primitive})}});
   }
 
   // Adds one buffer view with one accessor and returns the number of the accessor.
@@ -150,9 +177,6 @@ class GlbDocument {
     return number;
   }
 
-  const TriangleMesh& mesh_;
-  const std::optional<LongitudeLatitude>& map_;
-  std::uint64_t num_vertices_;  // those that are there twice counted twice
   Json document_;
   std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
 };
@@ -175,6 +199,21 @@ void append_all(BufferedOutput& buffer, const std::vector<Value>& values,
   for (const std::uint32_t vertex : doubled) buffer.append_value(stored(values[vertex]));
 }
 
+void append_arrays(BufferedOutput& buffer, const StoredMesh& level) {
+  const auto& [mesh, map] = level;
+  const std::span<const std::uint32_t> doubled = map ? std::span(map->doubled) : std::span<std::uint32_t>{};
+  const auto narrowed = [](const Vec3d& v) { return to_float(v); };
+  append_all(buffer, mesh.vertices, doubled, narrowed);
+  append_all(buffer, mesh.normals, doubled, narrowed);
+  append_all(buffer, mesh.colors, doubled, [linear = linear_shorts()](const VertexColor& c) {
+    return std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}};
+  });
+  if (map) {
+    for (const std::array<float, 2>& uv : map->texcoords) buffer.append_value(uv);
+  }
+  for (const Triangle& t : map ? map->triangles : mesh.triangles) buffer.append_value(t);
+}
+
 void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::string_view type) {
   buffer.append_value(static_cast<std::uint32_t>(bytes));
   buffer.append(type);
@@ -183,10 +222,19 @@ void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::strin
 }  // namespace
 
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  std::optional<LongitudeLatitude> map;
-  if (info.texture_coordinates)
-    map = longitude_latitude(mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
-  const GlbDocument document(mesh, map, info);
+  write_glb_levels({&mesh, 1}, {}, file, info);
+}
+
+void write_glb_levels(std::span<const TriangleMesh> levels, std::span<const double> coverage,
+                      const std::filesystem::path& file, const MeshFileInfo& info) {
+  std::vector<StoredMesh> stored;
+  for (const TriangleMesh& mesh : levels) {
+    stored.push_back({mesh, std::nullopt});
+    if (info.texture_coordinates) {
+      stored.back().map = longitude_latitude(mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
+    }
+  }
+  const GlbDocument document(stored, coverage, info);
   std::string json = document.json();
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + json.size() + 8 + document.num_bytes();
@@ -201,17 +249,7 @@ void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   append_chunk_header(buffer, json.size(), "JSON");
   buffer.append(json);
   append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
-  const std::span<const std::uint32_t> doubled = map ? std::span(map->doubled) : std::span<std::uint32_t>{};
-  const auto narrowed = [](const Vec3d& v) { return to_float(v); };
-  append_all(buffer, mesh.vertices, doubled, narrowed);
-  append_all(buffer, mesh.normals, doubled, narrowed);
-  append_all(buffer, mesh.colors, doubled, [linear = linear_shorts()](const VertexColor& c) {
-    return std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}};
-  });
-  if (map) {
-    for (const std::array<float, 2>& uv : map->texcoords) buffer.append_value(uv);
-  }
-  for (const Triangle& t : map ? map->triangles : mesh.triangles) buffer.append_value(t);
+  for (const StoredMesh& level : stored) append_arrays(buffer, level);
   buffer.flush();
   out.commit();
 }

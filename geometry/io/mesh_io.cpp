@@ -114,6 +114,12 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, con
   format.writer(moved, file, info);
 }
 
+void write_mesh_levels(std::span<const TriangleMesh> levels, std::span<const double> coverage,
+                       const std::filesystem::path& file, const MeshFileInfo& info) {
+  for (const TriangleMesh& mesh : levels) require_writable(mesh, file);
+  write_glb_levels(levels, coverage, file, info);
+}
+
 std::vector<std::string> info_lines(const MeshFileInfo& info) {
   std::vector<std::string> lines;
   const auto add = [&](std::string_view label, std::string text) {

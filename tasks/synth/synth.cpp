@@ -20,6 +20,7 @@
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
 #include "tasks/synth/synth_finish.h"
+#include "tasks/synth/synth_levels.h"
 #include "tasks/synth/synth_members.h"
 #include "tasks/synth/synth_mesh.h"
 #include "tasks/synth/synth_texture.h"
@@ -59,7 +60,7 @@ void declare_options(Job& job, SynthOptions& options) {
               "--write-recipe is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
-        return options.texture.size.empty() ? std::vector<fs::path>{words.front()}
+        return options.texture.size.empty() ? level_files(words.front(), options.body.mesh.levels)
                                             : texture_files(options.texture, words.front());
       });
   declare_mesh_options(job, options.body.mesh);
@@ -124,7 +125,7 @@ void declare_options(Job& job, SynthOptions& options) {
     if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
-  for (const char* of_one : {"--texture", "--tile"}) {
+  for (const char* of_one : {"--texture", "--tile", "--lod"}) {
     job.options.option("--members").excludes(job.options.option(of_one));
   }
   job.options.option("--seed")

@@ -16,6 +16,7 @@
 #include "synthesis/field/feature_list.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
+#include "tasks/synth/synth_levels.h"
 #include "tasks/synth/synth_mesh_internal.h"
 #include "tasks/synth/synth_output.h"
 #include "tasks/synthesis/body_mesh.h"
@@ -54,6 +55,10 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
                       : region.is_cut() ? "--tile"
                                         : "--points") +
                      ", or take erosion out of the recipe");
+  }
+  if (recipe.erosion && request.levels > 1) {
+    throw InputError(file.string() +
+                     ": erosion: is of one mesh; leave out --lod, or take erosion out of the recipe");
   }
   if (recipe.erosion && request.labels) {
     throw InputError(file.string() +
@@ -182,11 +187,16 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   std::optional<TileRecord> tile;
   if (!request.tile.empty() && !request.points)
     sinks.add(tile.emplace(field, resolution, region.tile).sink());
-  const BodyMeshReport made =
-      make_body_mesh({recipe, field, file, region, resolution, request.least_component,
-                      chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
-                      may_be_empty(request, region, output), request.even},
-                     sinks, job.stages());
+  const BodyMeshJob body{recipe,
+                         field,
+                         file,
+                         region,
+                         resolution,
+                         request.least_component,
+                         chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
+                         may_be_empty(request, region, output),
+                         request.even};
+  const BodyMeshReport made = make_body_mesh(body, sinks, job.stages());
   ManifoldReport report = made.manifold;
   if (tile) tile->finish(report.open_vertices);
   if (request.least_component > 0.0) job.summary["dropped_components"] = made.dropped_components;
@@ -202,7 +212,11 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   result.paint();
   std::vector<VertexValues> quantities;
   if (request.gravity.wanted()) quantities = vertex_gravity(job, request.gravity, recipe, result.collected());
-  result.write(quantities);
+  std::vector<DetailLevel> coarser = coarser_levels(job, body, request.levels, result.collected());
+  for (DetailLevel& level : coarser) result.paint(level.mesh);
+  if (coarser.empty() || level_file(output, 1) != output) result.write(quantities);
+  if (!coarser.empty())
+    write_levels(job, output, result.collected(), resolution, std::move(coarser), result.info());
   say_unstated_unit(job, recipe.length_unit, output);
   const MeshFormat& format = written_mesh_format(output);
   if (format.counts != nullptr) {
@@ -275,6 +289,13 @@ void declare_mesh_options(Job& job, MeshRequest& request) {
       "onto it, but for those at the cuts of tiles and patches. Keeps the mesh in memory, about 75 bytes for "
       "each triangle");
   job.options
+      .add_option("--lod", request.levels,
+                  "levels of detail: so many meshes, each of a quarter of the triangles of the one before. A "
+                  ".glb holds all of them (MSFT_lod); of other formats they are files: rock.ply, "
+                  "rock_lod1.ply. The summary says how far each one lies from the finest")
+      .check(in_range(1, 10))
+      .placeholder("N");
+  job.options
       .add_option(
           "--height-map", request.height_map,
           "also the patch as a GeoTIFF of metres over its mean plane, and its frame beside it as JSON")
@@ -307,6 +328,9 @@ void declare_mesh_options(Job& job, MeshRequest& request) {
                   "sizes, ages and angles (degrees), in the recipe's unit")
       .placeholder("FILE.csv|FILE.json")
       .writes();
+  for (const char* of_one : {"--tile", "--patch", "--points", "--labels", "--gravity"}) {
+    job.options.option("--lod").excludes(job.options.option(of_one));
+  }
 }
 
 namespace {
@@ -343,7 +367,7 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
   check_request(request, asked, recipe, file);
   if (asked.is_patch) asked.center = asked.center - recipe.origin;
   const auto [region, field] = region_on_surface(job, recipe, file, asked);
-  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),
+  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty() || request.levels > 1,
                     recipe.erosion.has_value(),
                     request.least_component > 0.0,
                     request.gravity.wanted(),
@@ -352,6 +376,7 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
                     request.even};
   const int resolution = choose_resolution(job, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
+  check_levels(request.levels, resolution);
   report_layers_left_out(job, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   if (!region.is_cut()) require_cameras_outside(job, request.preview, field);

@@ -39,6 +39,7 @@ struct MeshRequest {
   bool labels = false;
   bool texture_coordinates = false;  // in a .glb
   bool even = false;                 // triangles are made more even
+  int levels = 1;                    // of detail
   DeviceOption device;
 };
 

@@ -75,7 +75,8 @@ class MeshOutput {
       info_.notes = labels_->legend();
     }
     const bool streamed = format.streamed && !recipe.erosion && !request.gravity.wanted();
-    if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
+    if (!streamed || !request.preview.file.empty() || !request.height_map.empty() || request.levels > 1)
+      sinks_.add(collector_);
     if (streamed) stream(request.points);
   }
   MeshOutput(const MeshOutput&) = delete;
@@ -86,9 +87,11 @@ class MeshOutput {
   TriangleMesh& collected() { return collector_.mesh; }
 
   // Paints the mesh in memory. Call it when the mesh is complete.
-  void paint() {
-    if (colors_) collector_.mesh.colors = colors_->colors_of(center_, collector_.mesh);
+  void paint() { paint(collector_.mesh); }
+  void paint(TriangleMesh& mesh) const {
+    if (colors_) mesh.colors = colors_->colors_of(center_, mesh);
   }
+  const MeshFileInfo& info() const { return info_; }
 
   // Completes the file. Before that it does not exist. Quantities, if any, are properties of its vertices.
   void write(const std::vector<VertexValues>& quantities) {

@@ -68,7 +68,7 @@ def runs(folder):
     mesh = ["-o", folder / "mesh.ply", "--resolution", "16"]
     features = ["--feature-list", folder / "features.json"]
     yield ["synth", eroded, *mesh, *features, "--min-component", "0.1", "--gravity", "2000", "5"]
-    yield ["synth", body, *mesh, "--even"]
+    yield ["synth", body, *mesh, "--even", "--lod", "2"]
     yield ["render", folder / "mesh.ply", "-o", folder / "body.png", "--color", "z"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
     for k in (1, 2):
