@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
       "gravity",
       "Computes gravitational potential, acceleration, geopotential, slope and elevation of a body of "
       "uniform density that turns: at its facets, at its vertices, or at points inside and outside. Prints "
-      "mass, moments and gravity harmonics as JSON.");
+      "ten lines, or with --json mass, moments, harmonics and ranges as JSON; --summary writes these to a "
+      "file.");
   return program.run(argc, argv, astrolith::declare_gravity(program));
 }

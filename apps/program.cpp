@@ -21,6 +21,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/printable_text.h"
+#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
 
 namespace astrolith {
@@ -82,12 +83,6 @@ std::string bar(double fraction) {
   const int filled = static_cast<int>(kWidth * std::clamp(fraction, 0.0, 1.0));
   return std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(kWidth - filled), '.');
-}
-
-void write_summary(const std::string& file_name, const nlohmann::ordered_json& summary) {
-  // File names need not be UTF-8.
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  write_file(file_name, summary.dump(2, ' ', false, replace) + "\n");
 }
 
 // The table's long options without their dashes, and those of its commands.
@@ -227,7 +222,7 @@ void Program::timed(const std::function<void()>& work) {
 void Program::save_summary(const std::string& file) {
   if (!summary.contains("seconds")) summary["seconds"] = seconds();
   if (interrupted()) summary["interrupted"] = true;
-  write_summary(file, summary);
+  write_file(file, json_text(summary));
 }
 
 Progress Program::progress(std::string stage) const {

@@ -29,7 +29,7 @@ class Gravity:
     columns
         The names of the table's columns, with units.
     figures
-        What ``gravity`` prints: unit, facets, body (mass, moments and axes), harmonics, values (ranges and means),
+        What ``gravity --json`` prints: unit, facets, body (mass, moments and axes), harmonics, values (ranges and means),
         achieved_error; sites.
     """
 

@@ -45,7 +45,7 @@ def test_tables_have_the_bytes_of_gravity(example, program, tmp_path, at):
     mesh = astrolith.mesh(example("itokawa_details"), resolution=32)
     astrolith.write_mesh(mesh, tmp_path / "m.ply")
     said = json.loads(program("gravity", "m.ply", "-o", "g.npy", "--density", "1900", "--period", "12.132", "--at", at,
-                              "--axis", "0.1", "0", "1", "--degree", "6", "--sample", "10", "--unit", mesh.length_unit))  # fmt: skip
+                              "--axis", "0.1", "0", "1", "--degree", "6", "--sample", "10", "--unit", mesh.length_unit, "--json"))  # fmt: skip
     made = astrolith.gravity(mesh, 1900.0, period=12.132, at=at, axis=(0.1, 0, 1), degree=6, sample=10)
     assert made.table.tobytes() == np.load(tmp_path / "g.npy").tobytes()
     assert made.table.tobytes() in (tmp_path / "g.npy").read_bytes()

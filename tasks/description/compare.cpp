@@ -15,6 +15,7 @@
 #include "tasks/description/shape_options.h"
 #include "tasks/description/surface_options.h"
 #include "tasks/job/job.h"
+#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/mesh_unit.h"
 #include "tasks/repair/shape_repair.h"
@@ -59,12 +60,6 @@ void add_compare_options(Job& job, CompareArguments& arguments) {
       .check(one_of({"m", "km"}))
       .default_text("");
   arguments.surface.add_to(app, realism);
-}
-
-std::string text_of(const nlohmann::ordered_json& result) {
-  // File names need not be UTF-8.
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  return result.dump(2, ' ', false, replace) + "\n";
 }
 
 SurfaceComparison judge(const Job& job, const CompareArguments& arguments, const TriangleMesh& a,
@@ -155,11 +150,11 @@ void run_compare(Job& job, const CompareArguments& arguments) {
   if (!repair_of_a.is_null()) result["repair_of_a"] = repair_of_a;
   if (!repair_of_b.is_null()) result["repair_of_b"] = repair_of_b;
   job.summary = result;
-  if (!arguments.output.empty()) write_file(arguments.output, text_of(result));
+  if (!arguments.output.empty()) write_file(arguments.output, json_text(result));
   if (arguments.realism && !arguments.json) {
     job.print_result(lines_of(result, lines));
   } else if (arguments.output.empty()) {
-    job.print_result(text_of(result));
+    job.print_result(json_text(result));
   }
 }
 

@@ -12,11 +12,13 @@
 #include "numerics/files/output_file.h"
 #include "tasks/gravity/compute_gravity.h"
 #include "tasks/gravity/gravity_input.h"
+#include "tasks/gravity/gravity_lines.h"
 #include "tasks/gravity/gravity_outputs.h"
 #include "tasks/gravity/gravity_parts.h"
 #include "tasks/gravity/gravity_sites.h"
 #include "tasks/job/density_question.h"
 #include "tasks/job/job.h"
+#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/shape_repair.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -30,7 +32,7 @@ struct Arguments {
   double density = 0.0, period = 0.0, tolerance = 1e-7, radius = 0.0;
   std::tuple<double, double, double> axis{0, 0, 1};
   int resolution = 128, degree = 4, sample = 100;
-  bool exact = false;
+  bool exact = false, json = false;
   ShapeRepair repair;
   PictureOptions look;
   SitesRequest sites;
@@ -86,6 +88,7 @@ void add_options(Job& job, Arguments& a) {
       .check(zero_or_more());
   app.add_option("--resolution", a.resolution, "cells along the longest side of a recipe's body")
       .check(in_range(8, 4096));
+  app.add_flag("--json", a.json, "print all figures as JSON, in place of the ten lines that matter");
   declare_sites_options(app, a.sites);
   app.add_option("--preview", a.preview,
                  "also a picture in colours, with a bar; with --sites it has one view from above of each of "
@@ -141,11 +144,6 @@ GravityPlaces places_of(const Job& job, const Arguments& a, const GravityBody& b
   return {std::move(table.points), {}, {}, "points"};
 }
 
-void print(Job& job, const nlohmann::ordered_json& result) {
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  job.print_result(result.dump(2, ' ', false, replace) + "\n");
-}
-
 GravityOptions options_of(const Job& job, const Arguments& a, const GravityBody& body) {
   return {a.density,  a.period,
           axis_of(a), a.tolerance,
@@ -176,7 +174,7 @@ void run(Job& job, const Arguments& a) {
   const std::vector<LandingSite> sites = landing_sites(job, a.sites, a.shape, body, made.columns, result);
   write_outputs(job, a, body, made.columns, sites);
   if (!body.unit_words.empty()) job.say(body.unit_words);
-  print(job, result);
+  job.print_result(a.json ? json_text(result) : gravity_lines(result));
   job.summary = result;
 }
 

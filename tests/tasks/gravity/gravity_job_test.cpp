@@ -25,7 +25,7 @@ class Gravity : public testing::JobTest {
   Gravity() : JobTest("gravity", declare_gravity) { write("ball.obj", ellipsoid_obj(1, 1, 1, 31, 64)); }
 
   nlohmann::json gravity(const std::string& line) {
-    const Outcome outcome = run(line);
+    const Outcome outcome = run(line + " --json");
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return nlohmann::json::parse(outcome.output);
   }
@@ -81,7 +81,7 @@ TEST_F(Gravity, TakesTheUnitThatAFileStates) {
   write("metres.obj", "# length unit: m\n" + ellipsoid_obj(1000, 1000, 1000, 31, 64));
   EXPECT_NEAR(mass_of("metres.obj"), mass, 1e-6 * mass);
   EXPECT_EQ(run("metres.obj --density 2000 --degree 0 --unit m").errors, "");
-  const Outcome other = run("metres.obj --density 2000 --degree 0 --unit cm");
+  const Outcome other = run("metres.obj --density 2000 --degree 0 --unit cm --json");
   EXPECT_TRUE(has(other.errors, "note: metres.obj: states its unit as m; taken in cm, as --unit says"));
   EXPECT_NEAR(nlohmann::json::parse(other.output)["body"]["mass_kg"].get<double>() * 1e6, mass, 1e-6 * mass);
   write("feet.obj", "# length unit: ft\n" + ellipsoid_obj(1, 1, 1, 31, 64));
@@ -193,6 +193,22 @@ TEST_F(Gravity, WritesValuesOfVerticesThatReadersSkip) {
             std::string::npos);
 }
 
+TEST_F(Gravity, TellsAPersonTenLines) {
+  const Outcome outcome = run("ball.obj --density 2000 --period 5 --summary s.json --quiet");
+  EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 10) << outcome.output;
+  for (const char* part : {"mass 8.3", " kg at 2000 kg/m3", "turns once in 5 h", "facets (", "slope ",
+                           "--json prints all figures\n"}) {
+    EXPECT_TRUE(has(outcome.output, part)) << outcome.output;
+  }
+  nlohmann::json summary = json("s.json");
+  summary.erase("seconds");
+  EXPECT_EQ(summary, gravity("ball.obj --density 2000 --period 5"));
+  write("p.csv", "0 0 3\n");
+  const std::string at_points = run("ball.obj --density 2000 --points p.csv --sample 0").output;
+  EXPECT_TRUE(has(at_points, "; at rest\n") && has(at_points, "points (1):\n")) << at_points;
+  EXPECT_FALSE(has(at_points, "slope")) << at_points;
+}
+
 TEST_F(Gravity, OfARecipe) {
   write("r.json", R"({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres":
                  [[0, 0, 0, 10]]}})");
@@ -281,7 +297,7 @@ TEST_F(Gravity, DamagedMeshesAreRepaired) {
   write("whole.obj", ball);
   write("holed.obj", ball.substr(0, ball.rfind("f ")));
   const auto mass = [&](const std::string& file, const std::string& words) {
-    const Outcome outcome = run(file + " --density 2000 --sample 0 --degree 0");
+    const Outcome outcome = run(file + " --density 2000 --sample 0 --degree 0 --json");
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     EXPECT_TRUE(has(outcome.errors, words));
     return nlohmann::json::parse(outcome.output)["body"]["mass_kg"].get<double>();
@@ -363,7 +379,7 @@ TEST_F(Gravity, SitesAreLevelGroundApartFromOneAnother) {
   for (Vec3d& p : mesh.vertices) p *= p.z < 0.4 ? 1.0 + 0.02 * std::sin(20.0 * p.x) : 1.0;
   write_mesh(mesh, folder_ / "wavy.ply", {});
   const std::string line = "wavy.ply --density 2000 --sites 2 --site-size 0.4";
-  const Outcome outcome = run(line + " --site-list s.csv --preview s.png");
+  const Outcome outcome = run(line + " --site-list s.csv --preview s.png --json");
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   const auto sites = nlohmann::json::parse(outcome.output)["sites"];
   ASSERT_EQ(sites.size(), 2u);
