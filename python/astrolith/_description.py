@@ -99,6 +99,7 @@ def compare(
     points: int = 10000,
     samples: int = 100000,
     floor: bool = False,
+    align: bool = False,
     unit: str = "",
     seed: int = 1,
     threads: int = 0,
@@ -114,6 +115,9 @@ def compare(
         Points of each surface for the distances between the surfaces, 100 to 10**7.
     floor
         Whether the similarities of two samplings of `a` and of `b` are measured, too.
+    align
+        Whether `b` is moved and turned onto `a` before the distances are measured; `alignment` holds the motion p -> R p +
+        shift. Sizes stay.
     unit
         "m" or "km": the unit of both meshes; "": what they state.
 
@@ -142,6 +146,7 @@ def compare(
             _arrays.integer(points, "points", 2, 2**24),
             _arrays.integer(samples, "samples", 100, 10**7),
             _arrays.flag(floor, "floor"),
+            _arrays.flag(align, "align"),
             _options.seed(seed),
             _options.threads(threads),
             progress,

@@ -7,8 +7,9 @@ from typing import Any, Optional, Sequence, Union
 from astrolith import _arrays, _options, _synthesis
 from astrolith._mesh import Mesh
 from astrolith._options import Progress
-from astrolith._recipe import RecipeLike, Record, records
+from astrolith._recipe import RecipeLike, Record, change_reliefs, json_of, records
 
+_MOST_FINER_LEVELS = 6
 _FORMATS = tuple(row["extension"] for row in _synthesis.mesh_formats() if row["written"])
 
 
@@ -40,6 +41,8 @@ def _mesh_arguments(
     min_component: float,
     labels: bool,
     even: bool,
+    finer: Optional[int],
+    fill_unseen: bool,
 ) -> tuple[str, str, int, float, Any, bool, Any, float, bool, bool]:
     """The checked arguments of the module's functions, of which the recipe's text and name come first."""
     if resolution is not None and triangles is not None:
@@ -52,6 +55,12 @@ def _mesh_arguments(
         raise ValueError("aligned: is of a patch; give patch as well")
     json, name = _options.seeded(recipe, seed)
     fields = records(json)
+    of_reliefs: dict[str, Any] = {} if finer is None else {"finer": _arrays.integer(finer, "finer", 0, _MOST_FINER_LEVELS)}
+    if _arrays.flag(fill_unseen, "fill_unseen"):
+        of_reliefs["fill_unseen"] = True
+    if of_reliefs:
+        change_reliefs(fields, name, **of_reliefs)
+        json = json_of(fields)[0]
     if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
         culprit = "labels" if labels else "patch" if cube is not None else "tile"
         raise ValueError(f"{name}: erosion: is of the whole mesh; leave out {culprit}, or take erosion out of the recipe")
@@ -73,6 +82,8 @@ def mesh(
     min_component: float = 0.0,
     labels: bool = False,
     even: bool = False,
+    finer: Optional[int] = None,
+    fill_unseen: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> Mesh:
@@ -102,6 +113,11 @@ def mesh(
     even
         Make the triangles more even: vertices move along the surface and back onto it, but for those at cuts.
         `figures.even` states quality and moves.
+    finer
+        Levels by which the recipe's relief goes on below the edges of the measured model, 0 to 6, each a quarter as large
+        as the one before; None: those of the recipe.
+    fill_unseen
+        Whether ground that no camera saw, which the model has smooth, gets patches of the ground that was seen.
     threads
         Threads to use; 0: all. They do not change the result.
     progress
@@ -121,7 +137,9 @@ def mesh(
     KeyboardInterrupt
         Ctrl-C was pressed; it is raised within a second.
     """
-    arguments = _mesh_arguments(recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even)
+    arguments = _mesh_arguments(
+        recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even, finer, fill_unseen
+    )
     fields = records(arguments[0])
     made = _synthesis.mesh(*arguments, _options.threads(threads), progress)
     figures = Record(made["figures"])
@@ -153,6 +171,8 @@ def predict(
     min_component: float = 0.0,
     labels: bool = False,
     even: bool = False,
+    finer: Optional[int] = None,
+    fill_unseen: bool = False,
     format: str = ".ply",
     threads: int = 0,
 ) -> Record:
@@ -160,7 +180,7 @@ def predict(
 
     Parameters
     ----------
-    recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even
+    recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even, finer, fill_unseen
         As `mesh` has them.
     format
         The extension of the file: one that is written, of :func:`mesh_formats`.
@@ -179,5 +199,7 @@ def predict(
         The recipe or an argument is wrong, or there is no surface in the region.
     """
     _arrays.choice(format, "format", _FORMATS)
-    arguments = _mesh_arguments(recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even)
+    arguments = _mesh_arguments(
+        recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even, finer, fill_unseen
+    )
     return Record(_synthesis.predict(*arguments, format, _options.threads(threads)))

@@ -45,6 +45,15 @@ def records(text: str) -> Any:
     return json.loads(text, object_hook=Record)
 
 
+def change_reliefs(recipe: Any, name: str, **fields: Any) -> None:
+    """Sets fields of all reliefs of a recipe. Raises ValueError where it has none; `name` is the recipe's in the message."""
+    reliefs = [layer for layer in recipe.get("layers", []) if layer["type"] == "relief"]
+    if not reliefs:
+        raise ValueError(f"{name}: has no relief, whose heights {', '.join(fields)} would change; fit_shape makes one")
+    for relief in reliefs:
+        relief.update(fields)
+
+
 class Recipe(Record):
     """A body and its layers: what ``synth`` turns into meshes, and what the fits write.
 
@@ -167,11 +176,7 @@ class Recipe(Record):
             The recipe has no relief.
         """
         made = self.copy()
-        reliefs = [layer for layer in made.get("layers", []) if layer["type"] == "relief"]
-        if not reliefs:
-            raise ValueError("recipe: has no relief, whose heights could be drawn for other places; fit_shape makes one")
-        for relief in reliefs:
-            relief["arrangement"] = "like"
+        change_reliefs(made, "recipe", arrangement="like")
         made["seed"] = seed
         return made
 

@@ -6,7 +6,7 @@ import re
 import astrolith
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, WORM
 
 REGIONS = 40
 
@@ -43,6 +43,14 @@ def test_figures_are_those_of_the_values():
     assert made.figures.regions.correlations[0].correlation == pytest.approx(products[near].mean() / fine.var())
     slope = made.values["slope"]
     assert slope.min() >= 0 and made.figures.slopes.mean == pytest.approx(slope.mean())
+
+
+def test_a_body_that_was_moved_is_brought_back():
+    worm = astrolith.mesh(WORM, resolution=32)
+    moved = (worm.vertices[:, [1, 2, 0]] + np.float32(5.0), worm.faces)
+    made = astrolith.compare(worm, moved, align=True, points=200, samples=500)
+    assert made.mean_distance < 1e-4 < 0.1 < astrolith.compare(worm, moved, points=200, samples=500).mean_distance
+    np.testing.assert_allclose(np.linalg.det(np.array(made.alignment.rotation)), 1.0, atol=1e-9)
 
 
 def test_the_verdict_has_the_bytes_of_compare(program, tmp_path):

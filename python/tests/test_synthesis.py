@@ -260,6 +260,17 @@ def test_a_finished_recipe_has_the_landforms_of_a_known_body(ball):
         asteroid.finished("vesta", 0.2)
 
 
+def test_reliefs_go_on_below_their_models_as_in_synth(ball, example, program, tmp_path):
+    relief, patch = example("itokawa_relief"), (0.0, 0.0, 0.1, 0.05)
+    program("synth", relief, "--finer", "2", "--fill-unseen", "--patch", *patch, "--resolution", "24", "-o", "finer.ply")
+    finer, made = astrolith.mesh(relief, finer=2, fill_unseen=True, patch=patch, resolution=24), astrolith.read_mesh(tmp_path / "finer.ply")
+    assert (finer.vertices == made.vertices).all() and (finer.faces == made.faces).all()
+    assert len(finer.vertices) != len(astrolith.mesh(relief, patch=patch, resolution=24).vertices)
+    for wrong, message in (({"finer": 7}, "^finer: must be from 0 to 6"), ({"finer": 1}, "has no relief")):
+        with pytest.raises(ValueError, match=message):
+            astrolith.mesh(relief if wrong["finer"] == 7 else ball, resolution=16, **wrong)
+
+
 def test_a_body_of_the_kind_is_that_of_synth(ball, example, program, tmp_path):
     relief = astrolith.Recipe.read(example("itokawa_relief"))
     program("synth", example("itokawa_relief"), "--like", "--seed", "5", "--resolution", "40", "-o", "like.ply")

@@ -30,7 +30,7 @@ struct CompareArguments {
   ShapeOptions options;
   ShapeRepair repair;
   std::int64_t samples = 100000;
-  bool floor = false, realism = false, json = false;
+  bool floor = false, align = false, realism = false, json = false;
   std::string unit;
   SurfaceOptions surface;
 };
@@ -50,6 +50,8 @@ void add_compare_options(Job& job, CompareArguments& arguments) {
       .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
   app.add_flag("--floor", arguments.floor,
                "also say how alike two samplings of A are, and of B: more cannot be expected");
+  app.add_flag("--align", arguments.align,
+               "move and turn B onto A before the distances between the surfaces are measured");
   const Option realism = app.add_flag(
       "--realism", arguments.realism,
       "also say whether the surface of B passes for that of A, by what both are like from place to place: "
@@ -136,9 +138,9 @@ void run_compare(Job& job, const CompareArguments& arguments) {
                                 {"bins", options.bins},
                                 {"points", options.points}};
   if (!unit.empty()) result["length_unit"] = unit;
-  const Comparison comparison =
-      compare_meshes({arguments.a, a}, {arguments.b, b}, options, arguments.samples, arguments.floor,
-                     [&](const std::string& stage) { return job.progress(stage); });
+  const Comparison comparison = compare_meshes({arguments.a, a}, {arguments.b, b},
+                                               {options, arguments.samples, arguments.floor, arguments.align},
+                                               [&](const std::string& stage) { return job.progress(stage); });
   for (const std::string& remark : comparison.remarks) job.say(remark);
   result.update(comparison.figures);
   std::vector<std::string> lines;

@@ -3,6 +3,7 @@
 #include "descriptor/histogram_distance.h"
 #include "geometry/surface/surface_distance.h"
 #include "numerics/errors.h"
+#include "tasks/synthesis/alignment.h"
 #include "tasks/synthesis/describe_file.h"
 
 namespace astrolith {
@@ -63,16 +64,29 @@ void add_distances(const SurfaceDistanceReport& d, double diagonal, nlohmann::or
 
 }  // namespace
 
-Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const DescriptionOptions& options,
-                          std::int64_t samples, bool with_floor, const StageProgress& progress) {
+Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const ComparisonOptions& options,
+                          const StageProgress& progress) {
   // Trees refuse garbled meshes, so that they come first.
   const SurfaceTree tree_of_a = tree_of(a), tree_of_b = tree_of(b);
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
-  compare_histograms(a, b, with_floor, {options, progress, comparison.remarks}, comparison.figures);
-  add_distances(
-      surface_distance(a.mesh, tree_of_a, b.mesh, tree_of_b, samples, options.seed, progress("distance")),
-      a.mesh.bounds().diagonal(), comparison.figures);
+  const std::uint64_t seed = options.description.seed;
+  compare_histograms(a, b, options.floor, {options.description, progress, comparison.remarks},
+                     comparison.figures);
+  const double diagonal = a.mesh.bounds().diagonal();
+  const auto measure = [&](const TriangleMesh& other, const SurfaceTree& tree_of_other) {
+    add_distances(surface_distance(a.mesh, tree_of_a, other, tree_of_other, options.samples, seed,
+                                   progress("distance")),
+                  diagonal, comparison.figures);
+  };
+  if (!options.align) {
+    measure(b.mesh, tree_of_b);
+    return comparison;
+  }
+  const RigidMotion motion = align_surface(a.mesh, tree_of_a, b.mesh, seed, progress("align"));
+  const TriangleMesh aligned = moved(motion, b.mesh);
+  measure(aligned, SurfaceTree(aligned));
+  comparison.figures["alignment"] = alignment_json(motion);
   return comparison;
 }
 

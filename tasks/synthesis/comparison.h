@@ -21,16 +21,22 @@ struct NamedMesh {
 // The check takes an assertion in the move constructor of nlohmann's JSON for an exception.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 struct Comparison {
-  // The distances of the histograms, then those of the surfaces as they stand: neither is moved, turned or
-  // scaled. Distances are fractions of the diagonal of a's box, but for those "in_units_of_the_files".
+  // The distances of the histograms, then those of the surfaces as they stand, or with b moved onto a.
+  // Neither is scaled. Distances are fractions of the diagonal of a's box, but for those
+  // "in_units_of_the_files".
   nlohmann::ordered_json figures;
   std::vector<std::string> remarks;  // on the meshes, with their names
 };
 
-// Compares two meshes. `samples` points of each surface measure the distances between them. `with_floor` adds
-// the similarities of two samplings of each mesh: more cannot be expected. Throws InputError for a mesh
-// without area, and WorkError when progress asks to stop.
-Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const DescriptionOptions& options,
-                          std::int64_t samples, bool with_floor, const StageProgress& progress);
+struct ComparisonOptions {
+  DescriptionOptions description;
+  std::int64_t samples = 100000;  // of each surface, for the distances between them
+  bool floor = false;  // adds the similarities of two samplings of each mesh: more cannot be expected
+  bool align = false;  // moves and turns b onto a before distances are measured; "alignment" says how
+};
+
+// Compares two meshes. Throws InputError for a mesh without area, and WorkError when progress asks to stop.
+Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const ComparisonOptions& options,
+                          const StageProgress& progress);
 
 }  // namespace astrolith

@@ -116,7 +116,7 @@ def runs(folder):
     yield ["describe", rough, "--surface", "-o", folder / "surface.json", "--places", "500"]
     yield ["describe", ball, "-o", folder / "description.npy", "--points", "1000"]
     realism = ["--realism", "-o", folder / "realism.json", "--points", "500", "--samples", "500", "--places", "500"]
-    yield ["compare", fine, fine, "--floor", *realism]
+    yield ["compare", fine, fine, "--floor", "--align", *realism]
     yield ["compare", rough, rough, *realism]
     yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3", "--points", "500"]
     yield ["classify", "predict", folder / "model.json", ball]

@@ -106,6 +106,30 @@ TEST_F(Compare, ScalesNothingWhereAUnitIsUnknown) {
   }
 }
 
+// A body without symmetry, turned by 169 degrees about an oblique axis and shifted. Its own motion undoes
+// this.
+TEST_F(Compare, MovesAndTurnsOneBodyOntoTheOther) {
+  TriangleMesh body = testing::icosphere(4);
+  for (Vec3d& p : body.vertices) p = {3.0 * p.x, 2.0 * p.y * (1.0 + 0.2 * p.x), p.z + 0.3 * p.x * p.x};
+  write_mesh(body, folder_ / "body.ply", {});
+  const auto turn = [](const Vec3d& p) {  // rows of thirds: a rotation
+    return Vec3d{(-2 * p.x + p.y + 2 * p.z) / 3, (p.x - 2 * p.y + 2 * p.z) / 3,
+                 (2 * p.x + 2 * p.y + p.z) / 3};
+  };
+  TriangleMesh other = body;
+  for (Vec3d& p : other.vertices) p = turn(p) + Vec3d{20, -5, 7};
+  write_mesh(other, folder_ / "other.ply", {});
+  const auto apart = compare("body.ply other.ply"), aligned = compare("body.ply other.ply --align");
+  EXPECT_GT(apart["mean_distance"], 1.0);
+  EXPECT_LT(aligned["max_distance"], 1e-5);
+  EXPECT_EQ(aligned["similarity"], apart["similarity"]);
+  EXPECT_FALSE(apart.contains("alignment"));
+  const auto& rows = aligned["alignment"]["rotation"];
+  EXPECT_NEAR(rows[0][0], -2.0 / 3, 1e-5);
+  EXPECT_NEAR(rows[2][1], 2.0 / 3, 1e-5);
+  EXPECT_LT(compare("ball.obj ball.obj --align")["max_distance"], 1e-6);
+}
+
 TEST_F(Compare, WritesAFileAndASummary) {
   auto summary = figures("ball.obj long.obj -o c.json --points 300 --samples 500");
   EXPECT_TRUE(summary.at("seconds").is_number());
