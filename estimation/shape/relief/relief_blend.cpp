@@ -1,6 +1,7 @@
 #include "estimation/shape/relief/relief_blend.h"
 
 #include <cmath>
+#include <limits>
 
 #include "numerics/host_device.h"
 #include "numerics/parallel_for.h"
@@ -132,6 +133,33 @@ ASTROLITH_SIMD_CLONES double read_run(SampleSum of, const SampleRun& run, const 
   return errors;
 }
 
+constexpr HeightRange kNoHeights{std::numeric_limits<float>::infinity(),
+                                 -std::numeric_limits<float>::infinity()};
+void extend(HeightRange& range, const HeightRange& by) {
+  range = {std::min(range.least, by.least), std::max(range.greatest, by.greatest)};
+}
+
+// Extends the ranges of the slots of tiles by the samples of a run, which are sorted by their squares.
+void extend_ranges(const SampleRun& run, const std::vector<ReliefSample>& samples,
+                   std::vector<HeightRange>& of_slots) {
+  for (std::uint32_t i = run.first; i < run.end;) {
+    PointWeights p;
+    find_weights(samples[i].at, p);
+    const int square = square_of(samples[i].at);
+    HeightRange of_square = kNoHeights;
+    for (; i < run.end && square_of(samples[i].at) == square; ++i)
+      extend(of_square, {samples[i].height, samples[i].height});
+    for (int a = 0; a < 3; ++a) {
+      const std::int32_t tile = run.tiles[static_cast<std::size_t>(a)];
+      if (tile == 0) continue;
+      const auto corner = static_cast<std::size_t>(corner_of_square(p, a, tile));
+      for (std::size_t j = 0; j < 4; ++j) {
+        for (std::size_t k = 0; k < 4; ++k) extend(of_slots[corner + j * kReliefTileSide + k], of_square);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 float weight_around(const float* weights, const std::array<std::int32_t, 3>& tiles,
@@ -205,6 +233,26 @@ std::vector<double> ReliefBlend::sums(SampleSum of, const std::vector<double>& h
       },
       kGrain);
   return sums;
+}
+
+std::vector<HeightRange> ReliefBlend::ranges() const {
+  std::vector<HeightRange> of_slots(samples_.tiles.places.size(), kNoHeights);
+  parallel_for(
+      0, static_cast<std::int64_t>(samples_.cells()),
+      [&](std::int64_t number) {
+        const auto cell = static_cast<std::size_t>(number);
+        for (std::uint32_t r = samples_.first_run_of_cell[cell]; r < samples_.first_run_of_cell[cell + 1];
+             ++r)
+          extend_ranges(samples_.runs[r], samples_.samples, of_slots);
+      },
+      16);
+  std::vector<HeightRange> ranges(samples_.places.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    HeightRange range = kNoHeights;
+    for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) extend(range, of_slots[slots_[k]]);
+    ranges[i] = range.least <= range.greatest ? range : HeightRange{0.0f, 0.0f};
+  }
+  return ranges;
 }
 
 double ReliefBlend::mean_residual(const std::vector<double>& heights) const {

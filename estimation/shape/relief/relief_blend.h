@@ -30,6 +30,11 @@ enum class SampleSum {
   kError    // the height of the sample less the blend
 };
 
+// Length units.
+struct HeightRange {
+  float least, greatest;
+};
+
 class ReliefBlend {
  public:
   // The samples must outlive this.
@@ -38,6 +43,9 @@ class ReliefBlend {
   // (places) The sums over all samples, in an order that does not depend on threads. Without heights all are
   // 0.
   std::vector<double> sums(SampleSum of, const std::vector<double>& heights) const;
+
+  // (places) The range of the heights of the samples around each place; {0, 0} without samples.
+  std::vector<HeightRange> ranges() const;
 
   // The mean over the samples of |height of the sample - blend of the heights|, length units.
   double mean_residual(const std::vector<double>& heights) const;

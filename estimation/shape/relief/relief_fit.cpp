@@ -56,6 +56,18 @@ std::vector<std::uint16_t> rounded(std::vector<double>& heights, double step, Re
   return codes;
 }
 
+// Keeps each height near the samples around it. Where few samples see a place, at the border of a map, least
+// squares would make spikes of several times what was measured.
+void limit_to_samples(const ReliefBlend& blend, std::vector<double>& heights) {
+  constexpr double kBeyond = 0.5;  // of the range: splines reach a sharp peak with heights beyond it
+  const std::vector<HeightRange> ranges = blend.ranges();
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double least = ranges[i].least, greatest = ranges[i].greatest,
+                 beyond = kBeyond * (greatest - least);
+    heights[i] = std::clamp(heights[i], least - beyond, greatest + beyond);
+  }
+}
+
 std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
                                           const std::vector<std::uint16_t>& codes) {
   const ReliefLayout layout = relief_layout(places);
@@ -123,6 +135,7 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   std::vector<double> heights = solve_relief(blend, [&](double fraction, std::string_view words) {
     return report(progress, kSamplesShare + (1.0 - kSamplesShare) * fraction, words);
   });
+  limit_to_samples(blend, heights);
   const double step = options.step > 0.0 ? options.step : kDefaultStep * blend.mean_residual(heights);
   const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
   layer.pixels = picture_of(layer, samples.places, codes);
