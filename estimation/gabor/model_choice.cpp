@@ -10,6 +10,7 @@
 #include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_double.h"
 #include "numerics/sample_statistics.h"
 #include "numerics/watched_work.h"
 #include "synthesis/gabor/gabor_texture.h"
@@ -120,21 +121,26 @@ HeldOutScore score_of_squares(std::span<const TextureDistributions> squares) {
   return summary_of(scores);
 }
 
-TextureModel simplest_of_the_best(const Scores& scores, const std::array<HeldOutScore, 3>& means) {
-  const auto best = std::min_element(means.begin(), means.end(),
-                                     [](const HeldOutScore& a, const HeldOutScore& b) {
-                                       return a.mean.sum() < b.mean.sum();
-                                     }) -
-                    means.begin();
-  for (const TextureModel model : kTextureModels) {
-    std::vector<double> worse;
-    for (std::size_t k = 0; k < scores[0].size(); ++k) {
-      worse.push_back(scores[static_cast<std::size_t>(model)][k].sum() -
-                      scores[static_cast<std::size_t>(best)][k].sum());
-    }
-    if (mean_of(worse) <= standard_error(worse)) return model;
+// The logarithms of the scores of each model. Models are compared by ratios of scores, since a square unlike
+// the others has scores that are larger for every model, and would outweigh them.
+std::array<std::vector<double>, 3> logarithms_of(const Scores& scores) {
+  std::array<std::vector<double>, 3> logs;
+  for (std::size_t m = 0; m < scores.size(); ++m) {
+    for (const TextureScore& s : scores[m]) logs[m].push_back(portable::log(std::max(s.sum(), 1e-9)));
   }
-  return static_cast<TextureModel>(best);
+  return logs;
+}
+
+TextureModel simplest_of_the_best(const Scores& scores) {
+  const std::array<std::vector<double>, 3> logs = logarithms_of(scores);
+  const auto& best = *std::min_element(logs.begin(), logs.end(),
+                                       [](const auto& a, const auto& b) { return mean_of(a) < mean_of(b); });
+  const auto is_near = [&](const std::vector<double>& model) {
+    std::vector<double> worse;
+    for (std::size_t k = 0; k < model.size(); ++k) worse.push_back(model[k] - best[k]);
+    return mean_of(worse) <= standard_error(worse);
+  };
+  return static_cast<TextureModel>(std::find_if(logs.begin(), logs.end(), is_near) - logs.begin());
 }
 
 }  // namespace
@@ -174,7 +180,7 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
     });
   });
   for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summary_of(scores[m]);
-  choice.taken = simplest_of_the_best(scores, choice.scores);
+  choice.taken = simplest_of_the_best(scores);
   return choice;
 }
 

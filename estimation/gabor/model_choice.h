@@ -37,10 +37,10 @@ struct ModelChoice {
 };
 
 // Cuts a square of at most 256 pixels out of the middle of each quarter of the photo. Each model is fitted to
-// each square, and two textures of it are scored against all other squares. Of the models whose scores are
-// worse than the best one's by no more than the standard error of the difference, square by square, the
-// simplest is taken. A score on the seen square itself would favour the model that copies it. Throws
-// WorkError when `progress` asks to stop.
+// each square, and two textures of it are scored against all other squares. Of the models whose scores are,
+// in the mean of the logarithms of their ratios square by square, worse than the best one's by no more than
+// the standard error, the simplest is taken. A score on the seen square itself would favour the model that
+// copies it. Throws WorkError when `progress` asks to stop.
 ModelChoice choose_model(const GreyImage& photo, const std::string& name, const GaborFitOptions& options,
                          std::uint64_t seed, const Progress& progress = {});
 
