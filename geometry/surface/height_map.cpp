@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/mesh_measure.h"
-#include "numerics/errors.h"
-
 namespace astrolith {
 namespace {
 
@@ -47,8 +44,11 @@ void draw(HeightMap& map, const Vec3d& a, const Vec3d& b, const Vec3d& c, double
   }
 }
 
-HeightMap map_over(const TriangleMesh& mesh, const GroundAxes& axes, const Vec3d& origin, double length,
-                   int side, double scale) {
+}  // namespace
+
+HeightMap height_map(const TriangleMesh& mesh, const GroundPlane& plane, double length, int side,
+                     double scale) {
+  const auto& [axes, origin] = plane;
   HeightMap map{side, length / side, origin, axes.right, axes.ahead, axes.up, {}};
   const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   map.heights.assign(pixels, std::numeric_limits<float>::quiet_NaN());
@@ -57,19 +57,6 @@ HeightMap map_over(const TriangleMesh& mesh, const GroundAxes& axes, const Vec3d
          in_pixels(map, mesh.vertices[c]), scale);
   }
   return map;
-}
-
-}  // namespace
-
-HeightMap height_map(const TriangleMesh& mesh, double length, int side, double scale) {
-  const Vec3d up = mean_normal(mesh);
-  if (!(norm(up) > 0.5)) throw InputError("height map: the surface faces no direction; take a smaller patch");
-  return map_over(mesh, axes_about(up), surface_centroid(mesh), length, side, scale);
-}
-
-HeightMap height_map(const TriangleMesh& mesh, const GroundAxes& axes, double length, int side,
-                     double scale) {
-  return map_over(mesh, axes, dot(surface_centroid(mesh), axes.up) * axes.up, length, side, scale);
 }
 
 }  // namespace astrolith

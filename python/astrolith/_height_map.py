@@ -85,7 +85,9 @@ def height_map(
     center = _arrays.vector(patch, "patch", 4)
     unit = _arrays.choice(made.length_unit, "recipe.length_unit", _UNITS)
     vertices = made.vertices.astype(np.float64)
-    cube = made.figures.get("patch_axes")
-    axes = None if cube is None else [cube["right"], cube["ahead"], cube["up"]]
-    fields = _synthesis.height_map(vertices, made.faces, center[:3], center[3], resolution, unit, axes)
+    plane = made.figures.get("map_plane")
+    if plane is None:
+        raise ValueError("patch: the surface in it faces no direction; take a smaller one")
+    rows = [plane["right"], plane["ahead"], plane["up"], plane["origin"]]
+    fields = _synthesis.height_map(vertices, made.faces, center[:3], center[3], resolution, unit, rows)
     return HeightMap(**fields, body_frame=made.frame)

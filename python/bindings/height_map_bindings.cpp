@@ -1,13 +1,10 @@
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
-#include "geometry/surface/ground_axes.h"
 #include "geometry/surface/height_map.h"
 #include "numerics/length_unit.h"
 #include "python/bindings/arrays.h"
@@ -17,7 +14,8 @@
 namespace astrolith::python {
 namespace {
 
-using Axes = std::array<std::array<double, 3>, 3>;  // right, ahead and up
+using Plane =
+    std::array<std::array<double, 3>, 4>;  // right, ahead, up and the origin, relative to the centre
 
 Vec3d vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 std::array<double, 3> list(const Vec3d& v) { return {v.x, v.y, v.z}; }
@@ -25,13 +23,12 @@ std::array<double, 3> list(const Vec3d& v) { return {v.x, v.y, v.z}; }
 nb::typed<nb::dict, nb::str, nb::any> height_map_of(const Rows<double>& vertices,
                                                     const Rows<std::uint32_t>& faces,
                                                     const std::array<double, 3>& center, double length,
-                                                    int pixels, const std::string& unit,
-                                                    const std::optional<Axes>& axes) {
+                                                    int pixels, const std::string& unit, const Plane& plane) {
   const double metres = metres_of(unit);
   HeightMap map = run_job(nb::none(), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState&) {
-    if (!axes) return height_map(mesh, length, pixels, metres);
-    const auto& [right, ahead, up] = *axes;
-    return height_map(mesh, GroundAxes{vector(right), vector(ahead), vector(up)}, length, pixels, metres);
+    const auto& [right, ahead, up, origin] = plane;
+    const GroundAxes axes{vector(right), vector(ahead), vector(up)};
+    return height_map(mesh, GroundPlane{axes, vector(origin)}, length, pixels, metres);
   });
   const auto side = static_cast<std::size_t>(map.side);
   nb::typed<nb::dict, nb::str, nb::any> result;
@@ -48,8 +45,7 @@ nb::typed<nb::dict, nb::str, nb::any> height_map_of(const Rows<double>& vertices
 
 void bind_height_maps(nb::module_& module) {
   module.def("height_map", &height_map_of, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
-             nb::arg("center"), nb::arg("length"), nb::arg("pixels"), nb::arg("unit"),
-             nb::arg("axes").none());
+             nb::arg("center"), nb::arg("length"), nb::arg("pixels"), nb::arg("unit"), nb::arg("plane"));
 }
 
 }  // namespace astrolith::python

@@ -31,6 +31,7 @@
 #include "tasks/prediction/mesh_prediction.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
+#include "tasks/synthesis/patch_ground.h"
 
 namespace astrolith::python {
 namespace {
@@ -134,7 +135,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
   Region region = arguments.region(recipe.origin);
   const ImplicitField field = field_of_region(recipe, arguments.name, region);
-  align_to_ground(field, region);
+  place_patch(recipe, arguments.name, field, region);
   std::optional<SurfaceLabels> labels;
   VertexLabeller labeller;
   if (arguments.labels) {
@@ -164,7 +165,7 @@ MeshPrediction predict_of(const MeshArguments& arguments, const std::string& for
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
   Region region = arguments.region(recipe.origin);
   const ImplicitField field = field_of_region(recipe, arguments.name, region);
-  align_to_ground(field, region);
+  place_patch(recipe, arguments.name, field, region);
   MeshUse use;
   use.erosion = recipe.erosion.has_value();
   use.twice = arguments.min_component > 0.0;
@@ -198,6 +199,14 @@ nb::dict even_figures(const EvenStatistics& done) {
 
 nb::tuple tuple_of(const Vec3d& v) { return nb::make_tuple(v.x, v.y, v.z); }
 
+nb::dict axes_figures(const GroundAxes& axes) {
+  nb::dict figures;
+  figures["right"] = tuple_of(axes.right);
+  figures["ahead"] = tuple_of(axes.ahead);
+  figures["up"] = tuple_of(axes.up);
+  return figures;
+}
+
 nb::dict figures(const MadeMesh& made) {
   const BodyMeshReport& report = made.report;
   nb::dict figures;
@@ -212,12 +221,11 @@ nb::dict figures(const MadeMesh& made) {
   figures["evaluations"] = report.statistics.evaluations;
   figures["cell"] = report.statistics.step;
   if (made.region.is_patch || !(made.origin == Vec3d{})) figures["origin"] = tuple_of(made.origin);
-  if (const std::optional<GroundAxes>& axes = made.region.axes) {
-    nb::dict of_patch;
-    of_patch["right"] = tuple_of(axes->right);
-    of_patch["ahead"] = tuple_of(axes->ahead);
-    of_patch["up"] = tuple_of(axes->up);
-    figures["patch_axes"] = of_patch;
+  if (const std::optional<GroundAxes>& axes = made.region.axes) figures["patch_axes"] = axes_figures(*axes);
+  if (const std::optional<GroundPlane>& plane = made.region.plane) {
+    nb::dict of_map = axes_figures(plane->axes);
+    of_map["origin"] = tuple_of(plane->origin);
+    figures["map_plane"] = of_map;
   }
   if (report.even) figures["even"] = even_figures(*report.even);
   if (made.erosion) {

@@ -10,6 +10,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/field/surface_labels.h"
 
 namespace astrolith {
 namespace {
@@ -67,6 +68,9 @@ constexpr std::array kNumbers = {"x",        "y",        "z",        "mesh_x",  
                                  "age",      "axis_b",   "axis_c",   "heading",  "tilt",   "burial"};
 constexpr std::size_t kSurfaceColumn = 0, kMeshColumn = 3, kCenterColumn = 6, kFirstSizeColumn = 9;
 
+constexpr const char* kBoulder = "boulder";
+constexpr double kHigh = 0.1;  // cells: what is lower does not show
+
 using Numbers = std::array<std::optional<double>, kNumbers.size()>;  // absent where the kind has none
 
 struct Row {
@@ -91,8 +95,8 @@ void add_to_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
   *numbers[column + 2] += p.z;
 }
 
-Vec3d center_of(const Row& row) {
-  return {*row.numbers[kCenterColumn], *row.numbers[kCenterColumn + 1], *row.numbers[kCenterColumn + 2]};
+Vec3d point_of(const Row& row, std::size_t column) {
+  return {*row.numbers[column], *row.numbers[column + 1], *row.numbers[column + 2]};
 }
 
 Row crater_row(int layer, const PlacedCrater& c, double height_bound) {
@@ -116,7 +120,7 @@ double half_extent(const PlacedBoulder& b, const Vec3d& direction) {
 
 Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
   const double top = half_extent(b, bare.normal(b.center));
-  Row row{layer, "boulder", {}, false, top, top};
+  Row row{layer, kBoulder, {}, false, top, top};
   set_point(row.numbers, kCenterColumn, b.center);
   const std::array<std::optional<double>, 9> sizes{b.axes.x, {},        {},     {},      b.axes.y,
                                                    b.axes.z, b.heading, b.tilt, b.burial};
@@ -141,13 +145,40 @@ void find_surface_points(const ImplicitField& field, const BareSurface& bare, co
       0, static_cast<std::int64_t>(rows.size()),
       [&](std::int64_t i) {
         Row& row = rows[static_cast<std::size_t>(i)];
-        const Vec3d center = center_of(row), normal = bare.normal(center);
+        const Vec3d center = point_of(row, kCenterColumn), normal = bare.normal(center);
         const auto point = nearest_crossing(field, center + row.top * normal, normal, row.reach);
         if (!point) return;
         set_point(row.numbers, kSurfaceColumn, *point);
         set_point(row.numbers, kMeshColumn, *point - origin);
       },
       16);
+}
+
+// A boulder is resolved where the surface above its centre is its rock, and stands out of the ground there by
+// a tenth of a cell: the ground of layers below, or a larger boulder, may cover it.
+void leave_out_hidden_boulders(const ImplicitField& field, const Recipe& recipe,
+                               const std::optional<PatchCube>& patch, double cell, std::vector<Row>& rows) {
+  std::vector<std::size_t> shown;
+  std::vector<MeshVertex> tops;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Row& row = rows[i];
+    if (row.kind != kBoulder || !row.resolved) continue;
+    row.resolved = row.numbers[kMeshColumn].has_value();
+    if (!row.resolved) continue;
+    shown.push_back(i);
+    tops.push_back({to_float(point_of(row, kMeshColumn)), {}});
+  }
+  const Vec3d origin = patch ? patch->center : Vec3d{};
+  std::vector<VertexLabel> labels(tops.size());
+  std::vector<float> ground(tops.size());
+  SurfaceLabels(recipe, field, patch).label(origin, tops, labels, ground);
+  const FeatureFinder finder(field, recipe, patch, cell);
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    Row& row = rows[shown[k]];
+    const bool stands_out = double{ground[k]} < -kHigh * cell;
+    row.resolved = stands_out && finder.row_at(origin + point_of(row, kMeshColumn), ground[k]) ==
+                                     static_cast<std::int32_t>(shown[k]);
+  }
 }
 
 std::string text_of(double value) {
@@ -206,7 +237,7 @@ Box box_about(const Vec3d& center, double reach) {
 }  // namespace
 
 bool is_resolved(const Feature& landform, double cell) {
-  constexpr double kAcross = 2.0, kHigh = 0.1;  // cells
+  constexpr double kAcross = 2.0;  // cells
   const PlacedCrater* const crater = landform.crater;
   if (crater != nullptr)
     return crater->diameter >= kAcross * cell && crater->depth + crater->rim_height >= kHigh * cell;
@@ -247,6 +278,7 @@ void write_feature_list(const ImplicitField& field, const Recipe& recipe,
   const Vec3d origin = patch ? patch->center : Vec3d{};
   std::vector<Row> rows = rows_of(field, bare, patch, cell);
   find_surface_points(field, bare, origin, rows);
+  leave_out_hidden_boulders(field, recipe, patch, cell, rows);
   for (Row& row : rows) {
     for (const std::size_t column : {kCenterColumn, kSurfaceColumn}) {
       add_to_point(row.numbers, column, recipe.origin);

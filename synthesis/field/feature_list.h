@@ -48,8 +48,8 @@ std::vector<Feature> features_of(const ImplicitField& field, const std::optional
 //   depth, rim_height, age      craters only
 //   axis_b, axis_c, heading, tilt, burial    boulders only
 //   length_unit                 the recipe's unit
-//   resolved                    1 or true where the mesh shows the landform, as is_resolved() says; others
-//                               are in no map of instances
+//   resolved                    1 or true where the mesh shows the landform, as is_resolved() says, and a
+//                               boulder's rock stands out of the ground at x, y, z
 // A .json file holds {"length_unit", "frame", "origin" of the mesh in the recipe's frame, "features":
 // [objects]}. Any other file is CSV with a header. The file is whole or absent; throws what OutputFile
 // throws.

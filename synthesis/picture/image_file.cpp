@@ -74,16 +74,17 @@ struct CloseTiff {
 
 // The tags of GeoTIFF 1.1 and of GDAL that libtiff does not know by itself.
 constexpr std::uint32_t kPixelScale = 33550, kTiePoint = 33922, kGeoKeys = 34735, kGeoText = 34737,
-                        kNoData = 42113;
+                        kMetadata = 42112, kNoData = 42113;
 
 void declare_geo_tags(TIFF* tiff) {
-  static char names[5][20] = {"ModelPixelScale", "ModelTiepoint", "GeoKeyDirectory", "GeoAsciiParams",
-                              "GDAL_NODATA"};
-  const std::array<TIFFFieldInfo, 5> fields{{{kPixelScale, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, names[0]},
+  static char names[6][20] = {"ModelPixelScale", "ModelTiepoint", "GeoKeyDirectory",
+                              "GeoAsciiParams",  "GDAL_NODATA",   "GDAL_METADATA"};
+  const std::array<TIFFFieldInfo, 6> fields{{{kPixelScale, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, names[0]},
                                              {kTiePoint, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, names[1]},
                                              {kGeoKeys, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, names[2]},
                                              {kGeoText, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[3]},
-                                             {kNoData, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[4]}}};
+                                             {kNoData, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[4]},
+                                             {kMetadata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[5]}}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
 }
 
@@ -104,13 +105,22 @@ void set_geo_tags(TIFF* tiff, int width, int height, double pixel, const std::st
   TIFFSetField(tiff, kNoData, "nan");
 }
 
+// What GDAL reads the names of bands from.
+std::string metadata_of(const std::vector<std::string>& bands) {
+  std::string text = "<GDALMetadata>\n";
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    text += "  <Item name=\"DESCRIPTION\" sample=\"" + std::to_string(k) + "\" role=\"description\">" +
+            bands[k] + "</Item>\n";
+  }
+  return text + "</GDALMetadata>\n";
+}
+
 bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int height, int channels) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width));
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height));
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
   const auto row_size = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
@@ -207,13 +217,25 @@ void write_floats(std::span<const float> values, int width, int height, const st
 
 void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
                       int channels) {
-  write_floats(values, width, height, file, channels, [](TIFF*) {});
+  write_floats(values, width, height, file, channels, [&](TIFF* tiff) {
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+  });
 }
 
 void write_geotiff(std::span<const float> values, int width, int height, double pixel,
-                   const std::string& description, const std::filesystem::path& file) {
-  write_floats(values, width, height, file, 1,
-               [&](TIFF* tiff) { set_geo_tags(tiff, width, height, pixel, description); });
+                   const std::string& description, const std::filesystem::path& file,
+                   const std::vector<std::string>& bands) {
+  write_floats(
+      values, width, height, file, bands.empty() ? 1 : static_cast<int>(bands.size()), [&](TIFF* tiff) {
+        set_geo_tags(tiff, width, height, pixel, description);
+        if (bands.size() > 1) {
+          const std::vector<std::uint16_t> unspecified(bands.size() - 1, EXTRASAMPLE_UNSPECIFIED);
+          TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, static_cast<int>(bands.size()));
+          TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(unspecified.size()), unspecified.data());
+        }
+        if (!bands.empty()) TIFFSetField(tiff, kMetadata, metadata_of(bands).c_str());
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+      });
 }
 
 }  // namespace astrolith

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace astrolith {
@@ -53,8 +54,10 @@ void write_tiff_float(std::span<const float> values, int width, int height, cons
 // Writes a height map of a local plane that GDAL and GIS programs read: a GeoTIFF of 32-bit floats, row-major
 // with the top row first, uncompressed. The map is a plane in metres without a datum: `pixel` metres a pixel,
 // zero at the middle of the map, x to the right and y up. NaN is stated as the value of no data.
-// `description` becomes the image's description. Throws what write_tiff_float() throws.
+// `description` becomes the image's description. Throws what write_tiff_float() throws. values: (height x
+// width x bands), of which there is one where `bands` has no names; names have letters, digits and "_" only.
 void write_geotiff(std::span<const float> values, int width, int height, double pixel,
-                   const std::string& description, const std::filesystem::path& file);
+                   const std::string& description, const std::filesystem::path& file,
+                   const std::vector<std::string>& bands = {});
 
 }  // namespace astrolith

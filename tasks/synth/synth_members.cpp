@@ -80,6 +80,7 @@ std::vector<NamedFile> files_of(BodyRequest& body) {
           {"--preview", &body.mesh.preview.file},
           {"--preview-maps", &body.mesh.preview.maps},
           {"--height-map", &body.mesh.height_map},
+          {"--hazard-map", &body.mesh.hazard.file},
           {"--feature-list", &body.mesh.landforms},
           {"--write-recipe", &body.recipe}};
 }

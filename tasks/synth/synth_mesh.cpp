@@ -16,11 +16,14 @@
 #include "synthesis/field/feature_list.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
+#include "tasks/synth/synth_gravity.h"
 #include "tasks/synth/synth_levels.h"
+#include "tasks/synth/synth_maps.h"
 #include "tasks/synth/synth_mesh_internal.h"
 #include "tasks/synth/synth_output.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
+#include "tasks/synthesis/patch_ground.h"
 
 namespace astrolith {
 namespace {
@@ -65,8 +68,8 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
                      ": erosion: moves what layers made; leave out --labels, or take erosion out of the "
                      "recipe");
   }
-  if (request.gravity.wanted() && (region.is_cut() || request.points || request.labels)) {
-    throw InputError("--gravity: is of the whole mesh; leave out --tile, --patch, --points and --labels");
+  if (request.gravity.wanted() && (region.tile.count > 1 || request.points || request.labels)) {
+    throw InputError("--gravity: is of the whole body or a patch; leave out --tile, --points and --labels");
   }
   check_gravity(request.gravity, recipe);
   if (request.least_component > 0.0 && region.is_cut()) {
@@ -98,7 +101,9 @@ void check_mesh_outputs(const Job& job, const MeshRequest& request, const fs::pa
     require_writable(output);
   }
   check_preview(job, request.preview);
-  if (!request.height_map.empty()) require_extension(request.height_map, {".tif"});
+  for (const fs::path& map : {request.height_map, request.hazard.file}) {
+    if (!map.empty()) require_extension(map, {".tif"});
+  }
   if (request.landforms.empty()) return;
   require_extension(request.landforms, {".csv", ".json"});
   require_writable(request.landforms);
@@ -176,6 +181,16 @@ struct MeshPlan {
   const fs::path& output;
 };
 
+// Writes the mesh that a job has made, and coarser levels of it where they were asked for.
+void write_levels_of(Job& job, const MeshPlan& plan, const BodyMeshJob& made_by, MeshOutput& result,
+                     const std::vector<VertexValues>& quantities) {
+  std::vector<DetailLevel> coarser = coarser_levels(job, made_by, plan.request.levels, result.collected());
+  for (DetailLevel& level : coarser) result.paint(level.mesh);
+  if (coarser.empty() || level_file(plan.output, 1) != plan.output) result.write(quantities);
+  if (coarser.empty()) return;
+  write_levels(job, plan.output, result.collected(), plan.resolution, std::move(coarser), result.info());
+}
+
 // Makes the mesh and all files that were asked for.
 void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   const auto& [request, recipe, file, region, field, resolution, output] = plan;
@@ -187,16 +202,16 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   std::optional<TileRecord> tile;
   if (!request.tile.empty() && !request.points)
     sinks.add(tile.emplace(field, resolution, region.tile).sink());
-  const BodyMeshJob body{recipe,
-                         field,
-                         file,
-                         region,
-                         resolution,
-                         request.least_component,
-                         chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
-                         may_be_empty(request, region, output),
-                         request.even};
-  const BodyMeshReport made = make_body_mesh(body, sinks, job.stages());
+  const BodyMeshJob made_by{recipe,
+                            field,
+                            file,
+                            region,
+                            resolution,
+                            request.least_component,
+                            chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
+                            may_be_empty(request, region, output),
+                            request.even};
+  const BodyMeshReport made = make_body_mesh(made_by, sinks, job.stages());
   ManifoldReport report = made.manifold;
   if (tile) tile->finish(report.open_vertices);
   if (request.least_component > 0.0) job.summary["dropped_components"] = made.dropped_components;
@@ -210,13 +225,15 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
 
   require_cameras_outside(job, request.preview, result.collected());
   result.paint();
+  std::optional<SurfaceGravity> gravity;
   std::vector<VertexValues> quantities;
-  if (request.gravity.wanted()) quantities = vertex_gravity(job, request.gravity, recipe, result.collected());
-  std::vector<DetailLevel> coarser = coarser_levels(job, body, request.levels, result.collected());
-  for (DetailLevel& level : coarser) result.paint(level.mesh);
-  if (coarser.empty() || level_file(output, 1) != output) result.write(quantities);
-  if (!coarser.empty())
-    write_levels(job, output, result.collected(), resolution, std::move(coarser), result.info());
+  if (request.gravity.wanted()) {
+    const TriangleMesh& mesh = result.collected();
+    const BodyOfPatch body = region.is_patch ? body_of_patch(job, recipe, file) : BodyOfPatch{};
+    gravity.emplace(job, request.gravity, recipe, region.is_patch ? body.mesh : mesh);
+    quantities = gravity->at_vertices(job, mesh, region.center, region.is_patch ? body.coarse : mesh);
+  }
+  write_levels_of(job, plan, made_by, result, quantities);
   say_unstated_unit(job, recipe.length_unit, output);
   const MeshFormat& format = written_mesh_format(output);
   if (format.counts != nullptr) {
@@ -228,8 +245,12 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   if (!request.preview.maps.empty())
     write_preview_maps(job, request.preview, result.collected(),
                        {recipe, file, region, field, made.statistics.step});
-  if (!request.height_map.empty())
-    write_height_map(job, request.height_map, result.collected(), region, recipe, resolution);
+  if (request.has_maps()) {
+    const PatchGround ground{recipe, region, field};
+    const HeightMap map = heights_of_patch(result.collected(), ground, resolution);
+    if (!request.height_map.empty()) write_height_map(job, request.height_map, map, ground);
+    if (gravity && !request.hazard.file.empty()) write_hazard_map(job, request.hazard, map, ground, *gravity);
+  }
   if (!request.landforms.empty())
     write_feature_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
   summarize_mesh(job, recipe, region, made.statistics, report);
@@ -319,9 +340,25 @@ void declare_mesh_options(Job& job, MeshRequest& request) {
       .add_option(
           "--gravity", request.gravity.density_and_period,
           "with each vertex potential, acceleration, slope and elevation for this density and this period of "
-          "rotation about z, 0 = at rest (.ply)")
+          "rotation about z, 0 = at rest (.ply); of a patch, for the mass of the whole body")
       .expected(2)
       .placeholder("KG_M3 HOURS");
+  job.options
+      .add_option(
+          "--hazard-map", request.hazard.file,
+          "also a GeoTIFF with the pixels of --height-map that says of the ground that a lander stands "
+          "on, about each pixel, its slope in degrees, its roughness in metres, and the diameter of the "
+          "largest boulder in it")
+      .placeholder("FILE.tif")
+      .needs(job.options.option("--patch"))
+      .needs(job.options.option("--gravity"))
+      .writes();
+  job.options
+      .add_option("--footprint", request.hazard.footprint,
+                  "of --hazard-map: the side of the square of ground that a lander stands on")
+      .placeholder("L")
+      .needs(job.options.option("--hazard-map"))
+      .default_text("");
   job.options
       .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
@@ -340,17 +377,19 @@ struct FieldRegion {
   ImplicitField field;
 };
 
-// The field of a region; a patch beside the surface is moved onto it.
-FieldRegion region_on_surface(Job& job, const Recipe& recipe, const fs::path& file, Region region) {
+// The field of a region; a patch beside the surface is moved onto it. Its plane is found where it is needed.
+FieldRegion region_on_surface(Job& job, const Recipe& recipe, const fs::path& file, Region region,
+                              bool needs_plane) {
   constexpr int kMostMoves = 3;  // fine layers are known near a patch alone
   for (int move = 0;; ++move) {
     ImplicitField field = field_of_region(recipe, file, region, job.progress("landforms"));
-    const std::optional<Vec3d> beside =
-        move < kMostMoves ? surface_beside_patch(field, region) : std::nullopt;
+    std::optional<Vec3d> beside = move < kMostMoves ? surface_beside_patch(field, region) : std::nullopt;
     if (!beside) {
-      align_to_ground(field, region);
+      if (needs_plane) place_patch(recipe, file, field, region);
       return {region, std::move(field)};
     }
+    if (const auto ground = field_of_ground(recipe, file, region))
+      beside = surface_beside_patch(*ground, region).value_or(*beside);
     job.say(fmt::format(
         "patch: no surface crosses this cube; moved by {:.4g} {} to {:.9g} {:.9g} {:.9g} on the surface",
         norm(*beside - region.center), recipe.length_unit, recipe.origin.x + beside->x,
@@ -366,8 +405,9 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
   Region asked = region_of(request);
   check_request(request, asked, recipe, file);
   if (asked.is_patch) asked.center = asked.center - recipe.origin;
-  const auto [region, field] = region_on_surface(job, recipe, file, asked);
-  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty() || request.levels > 1,
+  const auto [region, field] =
+      region_on_surface(job, recipe, file, asked, asked.aligned || request.has_maps());
+  const MeshUse use{!request.preview.file.empty() || request.has_maps() || request.levels > 1,
                     recipe.erosion.has_value(),
                     request.least_component > 0.0,
                     request.gravity.wanted(),
@@ -377,6 +417,7 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
   const int resolution = choose_resolution(job, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   check_levels(request.levels, resolution);
+  check_hazard_map(request.hazard, region, recipe, resolution);
   report_layers_left_out(job, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   if (!region.is_cut()) require_cameras_outside(job, request.preview, field);

@@ -25,22 +25,31 @@ struct GravityRequest {
   bool wanted() const { return !density_and_period.empty(); }
 };
 
+// A map of what is dangerous to a lander (tasks/synth/synth_maps.h).
+struct HazardRequest {
+  std::filesystem::path file;  // GeoTIFF of a patch; empty = none
+  double footprint = 0.0;      // side of the square of ground that a lander stands on, length units
+};
+
 struct MeshRequest {
   MeshSizeRequest size;
   PreviewRequest preview;
   GravityRequest gravity;
   std::filesystem::path height_map;  // GeoTIFF of a patch; empty = none
-  std::filesystem::path landforms;   // list of craters and boulders; empty = none
-  std::string tile;                  // "3/16"; empty = the whole
-  std::vector<double> patch;         // centre and side; empty = the whole
-  bool aligned = false;              // the cube of the patch stands on its ground
-  double least_component = 0.0;      // share of the largest one's volume; 0 = all stay
+  HazardRequest hazard;
+  std::filesystem::path landforms;  // list of craters and boulders; empty = none
+  std::string tile;                 // "3/16"; empty = the whole
+  std::vector<double> patch;        // centre and side; empty = the whole
+  bool aligned = false;             // the cube of the patch stands on its ground
+  double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
   bool texture_coordinates = false;  // in a .glb
   bool even = false;                 // triangles are made more even
   int levels = 1;                    // of detail
   DeviceOption device;
+
+  bool has_maps() const { return !height_map.empty() || !hazard.file.empty(); }
 };
 
 void declare_mesh_options(Job& job, MeshRequest& request);

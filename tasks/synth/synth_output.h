@@ -75,8 +75,8 @@ class MeshOutput {
       info_.notes = labels_->legend();
     }
     const bool streamed = format.streamed && !recipe.erosion && !request.gravity.wanted();
-    if (!streamed || !request.preview.file.empty() || !request.height_map.empty() || request.levels > 1)
-      sinks_.add(collector_);
+    const bool collected = !request.preview.file.empty() || request.has_maps() || request.levels > 1;
+    if (!streamed || collected) sinks_.add(collector_);
     if (streamed) stream(request.points);
   }
   MeshOutput(const MeshOutput&) = delete;

@@ -169,19 +169,22 @@ std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Regi
   return beside ? near : std::nullopt;
 }
 
-void align_to_ground(const ImplicitField& field, Region& region) {
-  constexpr int kSteps = 3;  // the ground within the turned cube has another mean plane, if only a little
-  if (!region.aligned) return;
-  for (int step = 0; step < kSteps; ++step) {
+void place_on_ground(const ImplicitField& field, Region& region) {
+  if (!region.is_patch) return;
+  // The ground within a turned cube has another mean plane, if only a little.
+  const int steps = region.aligned ? 3 : 1;
+  for (int step = 0; step < steps; ++step) {
     MeshCollector ground;
     mesh_cube(field, region, kLookAround, ground, {});
     if (ground.mesh.triangles.empty()) return;
-    const Vec3d up = mean_normal(ground.mesh);
-    if (!(norm(up) > 0.5)) {
+    region.plane = mean_plane(ground.mesh);
+    if (!region.aligned) return;
+    if (!region.plane) {
       throw InputError("aligned: the surface in the cube faces no direction; take a smaller cube");
     }
-    region.axes = axes_about(up);
+    region.axes = region.plane->axes;
   }
+  region.plane->origin = dot(region.plane->origin, region.axes->up) * region.axes->up;
 }
 
 void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,

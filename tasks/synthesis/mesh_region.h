@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "geometry/surface/ground_axes.h"
+#include "geometry/surface/ground_plane.h"
 #include "numerics/progress.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/even_mesh.h"
@@ -16,10 +16,11 @@ namespace astrolith {
 struct Region {
   MeshTile tile;
   bool is_patch = false;
-  Vec3d center;                    // centre of a patch
-  double size = 0.0;               // side of a patch, length units
-  bool aligned = false;            // whether the cube of a patch stands on its ground
-  std::optional<GroundAxes> axes;  // of an aligned cube, where they are known: align_to_ground()
+  Vec3d center;                      // centre of a patch
+  double size = 0.0;                 // side of a patch, length units
+  bool aligned = false;              // whether the cube of a patch stands on its ground
+  std::optional<GroundAxes> axes;    // of an aligned cube, where they are known: place_on_ground()
+  std::optional<GroundPlane> plane;  // of its map, relative to `center`: place_on_ground()
 
   bool is_cut() const { return is_patch || tile.count > 1; }
   // A cube along the body's axes that holds the patch; none for the whole surface and for tiles.
@@ -44,11 +45,11 @@ Region tile_region(int number, int count);
 // regions.
 std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Region& region);
 
-// Turns the cube of a patch to its ground: `up` becomes the mean normal of the surface in the cube, weighted
-// by area, and the axes lie about it (geometry/surface/ground_axes.h). The field is that of region.cube().
-// Nothing happens where the region is not to be aligned or the cube holds no surface. Throws InputError for a
-// surface that faces no direction.
-void align_to_ground(const ImplicitField& field, Region& region);
+// Finds the plane of a patch's map: the mean plane of the surface in its cube. A cube that is to be aligned
+// turns to it; the plane then keeps the height of the centroid, and has the middle of the cube in its middle.
+// The field is that of region.cube(). Nothing happens where the region is no patch or the cube holds no
+// surface. Throws InputError for a cube to be aligned whose surface faces no direction.
+void place_on_ground(const ImplicitField& field, Region& region);
 
 // Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
 // all.

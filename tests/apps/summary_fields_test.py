@@ -75,6 +75,11 @@ def runs(folder):
         yield ["synth", body, *mesh[:-1], "32", "--tile", f"{k}/2"]
         shutil.copy(folder / "summary.json", folder / f"tile_{k}.json")
     yield ["check_tiles", folder / "tile_1.json", folder / "tile_2.json"]
+    worm = folder / "worm.json"  # a mesh of 256 cells has few triangles
+    worm.write_text(json.dumps({"format_version": 1, "length_unit": "km", "body": {
+        "type": "metaballs", "spheres": [[0.06 * k, 0, 0, 0.06] for k in range(-7, 8)]}}))  # fmt: skip
+    hazards = ["--hazard-map", folder / "hazards.tif", "--footprint", "0.02", "--gravity", "2000", "5"]
+    yield ["synth", worm, *mesh, "--patch", "0", "0", "0.06", "0.08", *hazards]
     yield ["synth", body, "--predict", "--resolution", "16"]
     yield ["synth", plain, *mesh, "--vary", "0.3", "--seed", "2"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--aligned"]

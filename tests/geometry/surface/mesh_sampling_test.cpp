@@ -5,6 +5,7 @@
 #include "geometry/mesh_measure.h"
 #include "geometry/surface/closest_on_triangle.h"
 #include "geometry/surface/decimated_mesh.h"
+#include "geometry/surface/footprint_planes.h"
 #include "geometry/surface/height_map.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
@@ -190,7 +191,8 @@ TEST(HeightMap, PixelsLieOnTheSurface) {
               ahead = cross(up, right);
   const auto f = [](double x, double y) { return 0.1 * std::sin(3 * x) * std::cos(2 * y); };
   const Vec3d center{5, -7, 11};
-  const HeightMap map = height_map(terrain(200, right, ahead, center, f), 1.6, 64, 1000.0);
+  const TriangleMesh wavy = terrain(200, right, ahead, center, f);
+  const HeightMap map = height_map(wavy, *mean_plane(wavy), 1.6, 64, 1000.0);
   ASSERT_EQ(map.heights.size(), 64u * 64);
   EXPECT_LT(norm(map.up - up), 1e-2);
   EXPECT_NEAR(dot(cross(map.right, map.ahead), map.up), 1.0, 1e-12);
@@ -208,17 +210,39 @@ TEST(HeightMap, PixelsLieOnTheSurface) {
 TEST(HeightMap, NoDataOutsideAndTheHighestOfSeveral) {
   const auto flat = [](double, double) { return 0.0; };
   const TriangleMesh low = terrain(4, {1, 0, 0}, {0, 1, 0}, {}, flat);
-  const HeightMap wide = height_map(low, 4.0, 8, 1.0);
+  const HeightMap wide = height_map(low, *mean_plane(low), 4.0, 8, 1.0);
   EXPECT_TRUE(std::isnan(wide.heights.front()));
   EXPECT_EQ(wide.heights[8 * 4 + 4], 0.0f);
   TriangleMesh high = terrain(4, {0.25, 0, 0}, {0, 0.25, 0}, {}, flat);
   for (Vec3d& p : high.vertices) p.z = 0.5;
-  const HeightMap both = height_map(testing::joined(low, high), 1.0, 8, 1.0);
+  const TriangleMesh two = testing::joined(low, high);
+  const HeightMap both = height_map(two, *mean_plane(two), 1.0, 8, 1.0);
   EXPECT_NEAR(both.heights[8 * 4 + 4] - both.heights[0], 0.5, 1e-6);
 }
 
+// A slope with one pixel that stands out by h: the rms about the plane of n x n pixels is about h / n.
+TEST(FootprintPlanes, HaveTheSlopeOfAPlaneAndSeeAPixelThatStandsOut) {
+  HeightMap map{9, 0.5, {}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}};
+  for (int j = 0; j < 9; ++j) {
+    for (int i = 0; i < 9; ++i) map.heights.push_back(static_cast<float>(0.25 * i * 0.5 - 0.75 * j * 0.5));
+  }
+  const std::vector<FootprintPlane> even = footprint_planes(map, 2);
+  for (const std::size_t at : {2u * 9 + 2, 4u * 9 + 4, 6u * 9 + 6}) {
+    EXPECT_NEAR(even[at].along_right, 0.25, 1e-6);
+    EXPECT_NEAR(even[at].along_ahead, 0.75, 1e-6);
+    EXPECT_NEAR(even[at].rms, 0.0, 1e-6);
+  }
+  EXPECT_TRUE(std::isnan(even[1 * 9 + 4].rms)) << "the square leaves the map";
+  map.heights[4 * 9 + 4] += 1.0f;
+  EXPECT_NEAR(footprint_planes(map, 2)[4 * 9 + 4].rms, std::sqrt(1.0 / 25 - 1.0 / 625), 1e-6);
+  map.heights[4 * 9 + 4] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(footprint_planes(map, 2)[5 * 9 + 5].rms));
+  EXPECT_TRUE(std::isnan(footprint_planes(map, 5)[4 * 9 + 4].rms));
+}
+
 TEST(HeightMap, ABodyFacesNoDirection) {
-  EXPECT_THROW(height_map(testing::reversed({}), 1, 8, 1), InputError);
+  EXPECT_FALSE(mean_plane(testing::octahedron()));
+  EXPECT_FALSE(mean_plane({}));
 }
 
 }  // namespace

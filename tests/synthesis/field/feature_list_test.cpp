@@ -91,6 +91,23 @@ TEST(FeatureList, FineBouldersOfAPatchAreFound) {
   EXPECT_EQ(landforms.row_at(rock.center + 0.51e-4 * up, 0.0f), -1);
 }
 
+// The second lies in the first.
+TEST(FeatureList, HiddenBouldersAreNotResolved) {
+  Recipe recipe = testing::sphere_recipe(10.0);
+  BoulderLayer boulders;
+  for (const double side : {4.0, 1.5, 1.6}) {
+    boulders.boulders.push_back({});
+    boulders.boulders.back().place = {{side == 1.6 ? -1.0 : 1.0, 0, 0}, true};
+    boulders.boulders.back().axes = {side, side, side};
+  }
+  boulders.roughness = 0.0;
+  recipe.layers = {boulders};
+  std::vector<bool> resolved;
+  const nlohmann::json list = listed(recipe, {});
+  for (const auto& feature : list["features"]) resolved.push_back(feature["resolved"]);
+  EXPECT_EQ(resolved, (std::vector<bool>{true, false, true}));
+}
+
 TEST(FeatureList, APatchHasItsOwnInItsFrame) {
   const Recipe recipe = cratered_ball();
   const PatchCube cube{{0, 0, 10}, 3};

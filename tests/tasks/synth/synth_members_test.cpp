@@ -214,9 +214,9 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
        {"0:2 --predict -o {member}.obj --labels", ".ply"},
        {"0:2 --predict -o {member}.foo", "{member}.foo"},
        // Options that contradict each other are no failure of each member.
-       {"0:2 --labels --gravity 2000 8" + outputs, "--gravity: is of the whole mesh"},
+       {"0:2 --labels --gravity 2000 8" + outputs, "--gravity: is of the whole body"},
        {"0:2 --gravity -1 8" + outputs, "--gravity: the density must be above 0"},
-       {"0:2 --predict --labels --gravity 2000 8", "--gravity: is of the whole mesh"},
+       {"0:2 --predict --labels --gravity 2000 8", "--gravity: is of the whole body"},
        {"0:2 -o {member}.ply --manifest pipe",
         "pipe is a folder, a device or a pipe; give the name of a file"},
        {"0:2 -o {member}.ply --manifest 0000012.ply", "is the name of two outputs"}});

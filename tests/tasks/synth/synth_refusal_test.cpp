@@ -48,7 +48,7 @@ TEST_F(SynthRefusal, OptionsThatMakeNoSense) {
               // Gravity.
               {"-o a.ply --gravity 0 6", "--gravity: the density"},
               {"-o a.ply --gravity 2000 -1", "--gravity: the period"},
-              {"-o a.ply --gravity 2000 6 --points", "--gravity: is of the whole"},
+              {"-o a.ply --gravity 2000 6 --points", "--gravity: is of the whole body or a patch"},
               {"-o a.ply --gravity 2000 6 --tile 1/2", "--gravity: is of the whole"},
               // Regions.
               {"-o a.ply --tile 0/3", "tile"},

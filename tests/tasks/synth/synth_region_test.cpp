@@ -4,6 +4,7 @@
 #include <map>
 
 #include "geometry/io/mesh_io.h"
+#include "tasks/gravity/gravity_job.h"
 #include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
@@ -37,6 +38,10 @@ class Tiff {
   }
   std::size_t entry(int tag) const { return entries_.at(static_cast<std::uint64_t>(tag)); }
   std::uint64_t short_of(int tag) const { return number(entry(tag) + 8, 2); }
+  // Where the first strip begins.
+  std::size_t first_pixel() const {
+    return number(entry(273) + 4, 4) == 1 ? values_of(273) : number(values_of(273), 4);
+  }
   // Where the values of a tag begin, which do not fit into its entry.
   std::size_t values_of(int tag) const { return number(entry(tag) + 8, 4); }
 
@@ -63,9 +68,7 @@ TEST_F(SynthRegion, HeightMapOfAPatch) {
   EXPECT_NEAR(tiff.real<double>(tiff.values_of(33922) + 32), 50.0, 1e-9);
   EXPECT_EQ(text("h.tif").substr(tiff.entry(42113) + 8, 3), "nan");
   // The pixel beside the middle lies 1 km from the ball's centre.
-  const std::size_t first =
-      tiff.number(tiff.entry(273) + 4, 4) == 1 ? tiff.values_of(273) : tiff.number(tiff.values_of(273), 4);
-  const double height = tiff.real<float>(first + 4 * (16 * 32 + 16));
+  const double height = tiff.real<float>(tiff.first_pixel() + 4 * (16 * 32 + 16));
   double square = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = [&](const char* name) { return frame[name][k].get<double>(); };
@@ -94,6 +97,65 @@ TEST_F(SynthRegion, AnAlignedPatchFillsItsHeightMap) {
   succeed(line + " --aligned --threads 1");
   EXPECT_TRUE(bytes == text("p.ply"));
   succeed(line + " --aligned --even");
+}
+
+// The map of a measured ground and that of the same ground with stones and grains have the same pixels.
+TEST_F(SynthRegion, AFrameDoesNotFollowWhatIsAdded) {
+  const std::string grains =
+      R"({"type": "gabor", "pixel_size": 1, "height_rms": 0.3, "lobes": [[3, 0.1, 0.1, 1]]})";
+  const std::string hills = R"({"type": "simplex", "amplitude": 9, "frequency": 0.01})";
+  write("prior.json", ball_recipe("m", 300, ", \"layers\": [" + hills + "]"));
+  write("truth.json", ball_recipe("m", 300, ", \"layers\": [" + hills + "," + grains + "]"));
+  for (const std::string more : {"", " --aligned"}) {
+    const std::string line = " -o p.ply --patch 0 180 240 40 --resolution 32 --height-map h.tif" + more;
+    succeed("prior.json" + line);
+    const auto frame = json("h.json");
+    const std::string heights = text("h.tif");
+    succeed("truth.json" + line + " --finish itokawa --from 12 --to 2");
+    for (const char* field : {"metres_per_pixel", "origin_m", "right", "ahead", "up"})
+      EXPECT_EQ(json("h.json")[field], frame[field]) << field << more;
+    EXPECT_NE(text("h.tif"), heights);
+  }
+}
+
+// A worm of 1 km: its patch has the mass of the whole, as `gravity` computes it from a mesh of other cells.
+TEST_F(SynthRegion, APatchHasTheGravityOfTheWholeBodyLong) {
+  std::string spheres = "[0, 0, 0, 0.06]";
+  for (int k = -6; k <= 6; ++k) spheres += ", [" + std::to_string(0.07 * k) + ", 0, 0, 0.06]";
+  write("worm.json",
+        R"({"format_version": 1, "length_unit": "km", "body": {"type": "metaballs", "spheres": [)" + spheres +
+            R"(]}, "layers": [{"type": "boulders", "boulders":
+    [{"direction": [0.01, 0, 1], "axes": [0.004, 0.004, 0.004]}]}]})");
+  const std::string line =
+      "worm.json -o p.ply --patch 0 0 0.064 0.05 --aligned --resolution 25 --gravity 2000 5 --summary s.json";
+  succeed(line + " --hazard-map hazards.tif --footprint 0.006");
+  const auto of_patch = json("s.json")["gravity"];
+  std::string points;
+  for (const Vec3d& p : read_mesh(folder_ / "p.ply").vertices)
+    points += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z + 0.064) + "\n";
+  write("points.csv", points);
+  testing::run_job(
+      "gravity", declare_gravity,
+      testing::words_of("worm.json --density 2000 --period 5 --resolution 200 --points points.csv "
+                        "--sample 0 --degree 0 --summary g.json --quiet"),
+      folder_.path());
+  const auto of_body = json("g.json")["values"];
+  for (const char* column : {"potential_J_kg", "effective_gravity_m_s2"}) {
+    for (const char* end : {"min", "max"})
+      EXPECT_NEAR(of_patch[column][end].get<double>() / of_body[column][end].get<double>(), 1.0, 5e-3)
+          << column;
+  }
+  const auto hazards = json("s.json")["hazard_map"];
+  EXPECT_NEAR(hazards["footprint_m"], 6.0, 1e-9);
+  EXPECT_NEAR(hazards["largest"]["boulder_m"], 4.0, 1e-6);
+  EXPECT_GT(hazards["largest"]["roughness_m"], 0.2);
+  const Tiff tiff(text("hazards.tif"));
+  EXPECT_EQ(tiff.short_of(277), 3u);                              // bands
+  EXPECT_TRUE(std::isnan(tiff.real<float>(tiff.first_pixel())));  // a footprint that leaves the map
+  refuse_all(line, {{" --hazard-map x.tif", "--footprint"},
+                    {" --hazard-map x.tif --footprint 0.001", "--footprint: is less than 3 pixels"},
+                    {" --hazard-map x.png --footprint 0.006", "x.png"}});
+  refuse("worm.json -o p.ply --hazard-map x.tif --footprint 1 --gravity 2000 5", "--hazard-map");
 }
 
 // Its own coordinates have the digits; readers add the origin, and a .stl has no place for one.
