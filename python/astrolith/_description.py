@@ -98,7 +98,6 @@ def compare(
     bins: int = 5,
     points: int = 10000,
     samples: int = 100000,
-    floor: bool = False,
     align: bool = False,
     unit: str = "",
     seed: int = 1,
@@ -113,8 +112,6 @@ def compare(
     ----------
     samples
         Points of each surface for the distances between the surfaces, 100 to 10**7.
-    floor
-        Whether the similarities of two samplings of `a` and of `b` are measured, too.
     align
         Whether `b` is moved and turned onto `a` before the distances are measured; `alignment` holds the motion p -> R p +
         shift. Sizes stay.
@@ -124,7 +121,7 @@ def compare(
     Returns
     -------
     Record
-        The figures of ``compare``: similarity, l2, chi_square, jensen_shannon, earth_movers; mean_distance,
+        The figures of ``compare``: similarity, similarity_floor of two samplings of each, l2, chi_square, jensen_shannon, earth_movers; mean_distance,
         p99_distance and max_distance as fractions of the diagonal of a's box; in_units_of_the_files; length_unit.
 
     Raises
@@ -145,7 +142,6 @@ def compare(
             _arrays.integer(bins, "bins", 2, 10),
             _arrays.integer(points, "points", 2, 2**24),
             _arrays.integer(samples, "samples", 100, 10**7),
-            _arrays.flag(floor, "floor"),
             _arrays.flag(align, "align"),
             _options.seed(seed),
             _options.threads(threads),

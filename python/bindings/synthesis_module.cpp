@@ -164,8 +164,8 @@ std::string compare(const fs::path& a_name, const Rows<double>& a_vertices,
                     const Rows<std::uint32_t>& a_faces, const fs::path& b_name,
                     const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces,
                     const std::string& features, int bins, std::int64_t points, std::int64_t samples,
-                    bool floor, bool align, std::uint64_t seed, int threads, nb::object progress) {
-  const ComparisonOptions options{description_options(features, bins, points, seed), samples, floor, align};
+                    bool align, std::uint64_t seed, int threads, nb::object progress) {
+  const ComparisonOptions options{description_options(features, bins, points, seed), samples, align};
   return run_job(
       std::move(progress), threads,
       [=, a = mesh_of(a_vertices, a_faces, {}), b = mesh_of(b_vertices, b_faces, {})](JobState& state) {
@@ -264,7 +264,7 @@ void bind_shapes(nb::module_& module) {
   module.def("compare", &compare, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
              nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),
              nb::arg("b_faces").noconvert(), nb::arg("features"), nb::arg("bins"), nb::arg("points"),
-             nb::arg("samples"), nb::arg("floor"), nb::arg("align"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("samples"), nb::arg("align"), nb::arg("seed"), nb::arg("threads"),
              nb::arg("progress").none());
 }
 

@@ -157,9 +157,9 @@ def test_descriptions_and_comparisons_have_the_figures_of_the_programs(example, 
     described = astrolith.describe(a, points=1000)
     assert described.histogram.tobytes() == np.load(tmp_path / "h.npy").tobytes()
     assert described.histogram.shape == (5,) * 6 and described.points == 1000
-    options = ["--points", "500", "--samples", "1000", "--floor"]
+    options = ["--points", "500", "--samples", "1000"]
     said = json.loads(program("compare", "a.ply", "b.ply", *options))
-    compared = astrolith.compare(a, b, points=500, samples=1000, floor=True)
+    compared = astrolith.compare(a, b, points=500, samples=1000)
     assert compared == {key: value for key, value in said.items() if key not in ("a", "b", "features", "bins", "points")}
 
 

@@ -48,8 +48,6 @@ void add_compare_options(Job& job, CompareArguments& arguments) {
   app.add_option("--samples", arguments.samples,
                  "samples of each surface, for the distances between the surfaces")
       .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
-  app.add_flag("--floor", arguments.floor,
-               "also say how alike two samplings of A are, and of B: more cannot be expected");
   app.add_flag("--align", arguments.align,
                "move and turn B onto A before the distances between the surfaces are measured");
   const Option realism = app.add_flag(
@@ -61,6 +59,9 @@ void add_compare_options(Job& job, CompareArguments& arguments) {
   app.add_option("--unit", arguments.unit, "unit of both files, in place of what they state")
       .check(one_of({"m", "km"}))
       .default_text("");
+  app.add_flag("--floor", arguments.floor,
+               "also judge another sampling of A, which is the best that B can reach")
+      .needs(realism);
   arguments.surface.add_to(app, realism);
 }
 
@@ -77,7 +78,8 @@ SurfaceComparison judge(const Job& job, const CompareArguments& arguments, const
 // What a reader of the terminal wants of the comparison.
 std::string lines_of(const nlohmann::ordered_json& result, const std::vector<std::string>& surface) {
   std::string text =
-      fmt::format("similarity of the shapes {:.3f}; 1: the same\n", result["similarity"].get<double>());
+      fmt::format("similarity of the shapes {:.3f}; of two samplings of A {:.3f}\n",
+                  result["similarity"].get<double>(), result["similarity_floor"]["a"].get<double>());
   text += fmt::format("distance {:.3g} mean, {:.3g} p99, {:.3g} max, of A's diagonal\n",
                       result["mean_distance"].get<double>(), result["p99_distance"].get<double>(),
                       result["max_distance"].get<double>());
@@ -138,9 +140,9 @@ void run_compare(Job& job, const CompareArguments& arguments) {
                                 {"bins", options.bins},
                                 {"points", options.points}};
   if (!unit.empty()) result["length_unit"] = unit;
-  const Comparison comparison = compare_meshes({arguments.a, a}, {arguments.b, b},
-                                               {options, arguments.samples, arguments.floor, arguments.align},
-                                               [&](const std::string& stage) { return job.progress(stage); });
+  const Comparison comparison =
+      compare_meshes({arguments.a, a}, {arguments.b, b}, {options, arguments.samples, arguments.align},
+                     [&](const std::string& stage) { return job.progress(stage); });
   for (const std::string& remark : comparison.remarks) job.say(remark);
   result.update(comparison.figures);
   std::vector<std::string> lines;

@@ -97,7 +97,7 @@ void declare_options(Job& job, SynthOptions& options) {
           .add_option(
               "--vary", options.vary,
               "another body of the same kind: the strongest variation that --seed draws whose similarity "
-              "with the --target, or else with the recipe's own body, as `compare` measures it, is at "
+              "with the --target, or else with the recipe's own body, by their shape histograms, is at "
               "least 1 less this; with new noise, unless that alone is too different")
           .check(in_range(1e-3, 1.0))
           .default_text("");

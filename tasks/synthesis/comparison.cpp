@@ -1,6 +1,7 @@
 #include "tasks/synthesis/comparison.h"
 
 #include "descriptor/histogram_distance.h"
+#include "descriptor/surface/evened_surface.h"
 #include "geometry/surface/surface_distance.h"
 #include "numerics/errors.h"
 #include "tasks/synthesis/alignment.h"
@@ -9,7 +10,8 @@
 namespace astrolith {
 namespace {
 
-// Samples shapes. Each sampling of a shape has a seed of its own.
+// Describes shapes by points that are as far apart on each, at which the surface is evened: what is finer
+// than the points on one mesh does not count. Each sampling of a shape has a seed of its own.
 struct Sampler {
   const DescriptionOptions& options;
   const StageProgress& progress;
@@ -18,11 +20,22 @@ struct Sampler {
   ShapeHistogram operator()(const NamedMesh& shape, std::uint64_t which) const {
     DescriptionOptions own = options;
     own.seed = options.seed + which * 0x9e3779b97f4a7c15u;
-    ShapeDescription description = describe_file(shape.name, shape.mesh, own, progress("describe"));
+    const EvenedSurface even = evened(shape, own);
+    ShapeDescription description =
+        describe_file(shape.name, even.points, even.normals, own, progress("describe"));
     if (which < 2) {
       for (const std::string& remark : description.remarks) remarks.push_back(shape.name + ": " + remark);
     }
     return std::move(description.histogram);
+  }
+
+ private:
+  EvenedSurface evened(const NamedMesh& shape, const DescriptionOptions& own) const {
+    try {
+      return even_surface(shape.mesh, own.points, own.seed, progress("even"));
+    } catch (const InputError& e) {
+      throw InputError(shape.name + ": " + e.what());
+    }
   }
 };
 
@@ -30,14 +43,12 @@ nlohmann::ordered_json figures(const DistanceFigures& d) {
   return {{"mean", d.mean}, {"p99", d.p99}, {"max", d.max}};
 }
 
-void compare_histograms(const NamedMesh& a, const NamedMesh& b, bool with_floor, const Sampler& sampled,
+void compare_histograms(const NamedMesh& a, const NamedMesh& b, const Sampler& sampled,
                         nlohmann::ordered_json& result) {
   const ShapeHistogram ha = sampled(a, 0), hb = sampled(b, 1);
   const HistogramDistances d = histogram_distances(ha, hb);
   result["similarity"] = d.similarity;
-  if (with_floor) {
-    result["similarity_floor"] = {{"a", similarity(ha, sampled(a, 2))}, {"b", similarity(hb, sampled(b, 3))}};
-  }
+  result["similarity_floor"] = {{"a", similarity(ha, sampled(a, 2))}, {"b", similarity(hb, sampled(b, 3))}};
   result["l2"] = d.l2;
   result["chi_square"] = d.chi_square;
   result["jensen_shannon"] = d.jensen_shannon;
@@ -71,8 +82,7 @@ Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const Comparis
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
   const std::uint64_t seed = options.description.seed;
-  compare_histograms(a, b, options.floor, {options.description, progress, comparison.remarks},
-                     comparison.figures);
+  compare_histograms(a, b, {options.description, progress, comparison.remarks}, comparison.figures);
   const double diagonal = a.mesh.bounds().diagonal();
   const auto measure = [&](const TriangleMesh& other, const SurfaceTree& tree_of_other) {
     add_distances(surface_distance(a.mesh, tree_of_a, other, tree_of_other, options.samples, seed,

@@ -21,9 +21,10 @@ struct NamedMesh {
 // The check takes an assertion in the move constructor of nlohmann's JSON for an exception.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 struct Comparison {
-  // The distances of the histograms, then those of the surfaces as they stand, or with b moved onto a.
-  // Neither is scaled. Distances are fractions of the diagonal of a's box, but for those
-  // "in_units_of_the_files".
+  // The distances of the histograms of both surfaces, evened at as many points each
+  // (descriptor/surface/evened_surface.h), and the similarities of two samplings of each mesh, as a floor:
+  // more cannot be expected. Then those of the surfaces as they stand, or with b moved onto a. Neither is
+  // scaled. Distances are fractions of the diagonal of a's box, but for those "in_units_of_the_files".
   nlohmann::ordered_json figures;
   std::vector<std::string> remarks;  // on the meshes, with their names
 };
@@ -31,7 +32,6 @@ struct Comparison {
 struct ComparisonOptions {
   DescriptionOptions description;
   std::int64_t samples = 100000;  // of each surface, for the distances between them
-  bool floor = false;  // adds the similarities of two samplings of each mesh: more cannot be expected
   bool align = false;  // moves and turns b onto a before distances are measured; "alignment" says how
 };
 
