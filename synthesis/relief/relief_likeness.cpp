@@ -4,142 +4,118 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "numerics/errors.h"
-#include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
 #include "numerics/sample_statistics.h"
-#include "synthesis/relief/relief_anchors.h"
+#include "synthesis/relief/relief_donors.h"
+#include "synthesis/relief/relief_laying.h"
 #include "synthesis/relief/relief_shares.h"
 #include "synthesis/relief/relief_values.h"
 
 namespace astrolith {
 namespace {
 
-// In mean edges of the measured model: standard deviations of smoothing.
-constexpr std::array<double, 3> kEqualBands = {0.7, 1.4, 2.8};
 constexpr std::size_t kFewestAnchors = 10;
 
-// Anchors of a body, and for each the anchor of the measured body that gives its patch.
-struct DrawnAnchors {
-  std::vector<ReliefAnchor> anchors, donors;
-};
+void add(const std::vector<double>& heights, std::vector<double>& sum, double gain = 1.0) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * heights[i];
+}
 
-DrawnAnchors draw_anchors(std::vector<ReliefAnchor> anchors, const std::vector<ReliefAnchor>& measured,
-                          const LikenessOptions& options) {
-  DrawnAnchors drawn{std::move(anchors), {}};
-  for (const std::uint32_t donor :
-       relief_donors(drawn.anchors, measured, options.reach, options.fill, hash_append(options.hash, 1))) {
-    drawn.donors.push_back(measured[donor]);
+using BandRms = std::array<double, kReliefBands>;
+
+// The geometric mean over the body of the root mean square around a place. A mean of squares would be that of
+// few rough places. With `seen_alone` places below a seventh of the third quartile do not count.
+double typical_rms(const ReliefPoints& points, const std::vector<std::uint32_t>& places,
+                   const std::vector<double>& squares, bool seen_alone) {
+  constexpr double kLeast = 1e-12;  // of the largest square
+  const double largest = *std::max_element(squares.begin(), squares.end());
+  if (!(largest > 0.0)) return 0.0;
+  const double least = seen_alone ? ranked_value(squares, squares.size() * 3 / 4) / 49.0 : 0.0;
+  double total = 0.0, logarithms = 0.0;
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    if (squares[i] < least) continue;
+    const double weight = points.weight(places[i]);
+    total += weight;
+    logarithms += weight * portable::log(std::max(squares[i] / largest, kLeast));
   }
-  return drawn;
+  return std::sqrt(largest * portable::exp(logarithms / total));
 }
 
-// The points around an anchor.
-std::vector<PatchPoint> points_around(const ReliefPoints& points, const ReliefAnchor& anchor, double radius) {
-  std::vector<PatchPoint> around;
-  points.for_each_near(anchor.at, anchor.up, radius, [&](std::uint32_t k, double squared, double facing) {
-    const Vec3d offset = points.at(k) - anchor.at;
-    const double x = dot(offset, anchor.right), y = dot(offset, anchor.ahead);
-    const double across = std::sqrt(x * x + y * y), scale = across > 0.0 ? norm(offset) / across : 0.0;
-    around.push_back({k, scale * x, scale * y, 1.0 - squared / (radius * radius), facing});
-  });
-  return around;
-}
-
-// The sums of the patches at the points.
-std::vector<PatchSums> sums_of(const ReliefPatches& patches, const ReliefPoints& points,
-                               const DrawnAnchors& drawn, std::uint32_t hash) {
-  constexpr std::size_t kTogether = 256;  // anchors whose patches are kept at a time
-  std::vector<PatchSums> sums(points.size());
-  for (std::size_t first = 0; first < drawn.anchors.size(); first += kTogether) {
-    std::vector<std::vector<PatchHeight>> of_anchor(std::min(kTogether, drawn.anchors.size() - first));
-    parallel_for(0, static_cast<std::int64_t>(of_anchor.size()), [&](std::int64_t number) {
-      const std::size_t a = first + static_cast<std::size_t>(number);
-      const PatchTurn turn = turn_of(hash_append(hash_append(hash, 2), static_cast<std::uint32_t>(a)));
-      of_anchor[a - first] = patches.heights_at(
-          points_around(points, drawn.anchors[a], patches.anchor_spacing().radius()), drawn.donors[a], turn);
-    });
-    for (const std::vector<PatchHeight>& patch : of_anchor) {
-      for (const PatchHeight& p : patch) sums[p.number].add(p);
+BandRms typical_rms(const ReliefPoints& points, const BandHeights& bands, double edge, bool seen_alone) {
+  constexpr std::array<double, 2> kAround = {3.0, 12.0};  // edges: for the three narrow bands, and the others
+  BandRms rms{};
+  for (std::size_t set = 0; set < kAround.size(); ++set) {
+    ThreeFields squares;
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      squares[k] = bands[std::min(3 * set + k, kReliefBands - 1)];
+      for (double& height : squares[k]) height *= height;
     }
-  }
-  return sums;
-}
-
-// The heights at the points; where no patch has a weight, those of `otherwise`.
-std::vector<double> blended(const ReliefPatches& patches, const ReliefPoints& points,
-                            const DrawnAnchors& drawn, const std::vector<double>& otherwise,
-                            std::uint32_t hash) {
-  const std::vector<PatchSums> sums = sums_of(patches, points, drawn, hash);
-  std::vector<double> heights(points.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    heights[i] = sums[i].any() ? sums[i].height() : otherwise[i];
-  }
-  return heights;
-}
-
-// Heights in bands, from fine to wide, and what all smoothing leaves. Their sum is the heights.
-struct Bands {
-  ThreeFields narrow;
-  std::vector<double> rest;
-
-  Bands(const ReliefPoints& points, const std::vector<double>& heights, double edge) : rest(heights) {
-    for (std::size_t band = 0; band < narrow.size(); ++band) {
-      std::vector<double> smooth = smoothed_heights(points, rest, kEqualBands[band] * edge);
-      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= smooth[i];
-      narrow[band] = std::exchange(rest, std::move(smooth));
-    }
-  }
-};
-
-// The geometric mean over the body of the root mean square around a place, for each band. A mean of squares
-// would be that of few rough places. With `seen_alone` places below a seventh of the third quartile do not
-// count.
-std::array<double, 3> typical_rms(const ReliefPoints& points, ThreeFields bands, double edge,
-                                  bool seen_alone) {
-  constexpr double kAround = 3.0, kLeast = 1e-12;  // edges; of the largest square
-  for (std::vector<double>& band : bands) {
-    for (double& height : band) height *= height;
-  }
-  const SampledMeans sampled = sampled_means(points, bands, kAround * edge);
-  std::array<double, 3> rms{};
-  for (std::size_t band = 0; band < bands.size(); ++band) {
-    const double largest = *std::max_element(bands[band].begin(), bands[band].end());
-    if (!(largest > 0.0)) continue;
-    const std::vector<double>& around = sampled.means[band];
-    const double least = seen_alone ? ranked_value(around, around.size() * 3 / 4) / 49.0 : 0.0;
-    double total = 0.0, logarithms = 0.0;
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      if (around[i] < least) continue;
-      const double weight = points.weight(sampled.places[i]);
-      total += weight;
-      logarithms += weight * portable::log(std::max(around[i] / largest, kLeast));
-    }
-    rms[band] = std::sqrt(largest * portable::exp(logarithms / total));
+    const SampledMeans sampled = sampled_means(points, squares, kAround[set] * edge);
+    for (std::size_t k = 0; k < squares.size() && 3 * set + k < kReliefBands; ++k)
+      rms[3 * set + k] = typical_rms(points, sampled.places, sampled.means[k], seen_alone);
   }
   return rms;
 }
 
-// Heights whose bands are as strong as those that were measured: blends and resampling take from each a share
-// of its own.
-std::vector<double> equalized(const ReliefPoints& points, const std::vector<double>& heights,
-                              const ReliefPoints& of_measured, const std::vector<double>& measured,
-                              double edge, bool seen_alone) {
-  constexpr double kMostGain = 2.0;  // of all bands but the finest, which would be noise
-  const std::array<double, 3> wants =
-      typical_rms(of_measured, Bands(of_measured, measured, edge).narrow, edge, seen_alone);
-  const Bands bands(points, heights, edge);
-  const std::array<double, 3> has = typical_rms(points, bands.narrow, edge, seen_alone);
-  std::vector<double> sum = bands.rest;
-  for (std::size_t band = 0; band < has.size(); ++band) {
-    const double most = band == 0 ? 1.0 : kMostGain;
-    const double gain = has[band] > 0.0 ? std::min(wants[band] / has[band], most) : 1.0;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands.narrow[band][i];
+// Coefficients of what has been laid, with bands as strong as those that were measured: seams take from each
+// a share of its own.
+std::vector<double> equalized(const ReliefPoints& points, const ReliefValues& blend,
+                              const std::vector<LaidHeights>& laid, const BandRms& wants, double edge,
+                              bool seen_alone) {
+  constexpr double kMostGain = 2.0;
+  BandHeights bands;
+  for (std::size_t b = 0; b < kReliefBands; ++b) {
+    for (const LaidHeights& place : laid) bands[b].push_back(double{place.height[b]});
   }
-  return sum;
+  const BandRms has = typical_rms(points, bands, edge, seen_alone);
+  std::vector<double> sum(points.size(), 0.0);
+  for (std::size_t b = 0; b < kReliefBands; ++b)
+    add(bands[b], sum, has[b] > 0.0 ? std::min(wants[b] / has[b], kMostGain) : 1.0);
+  return blend.coefficients_of(sum);
+}
+
+BandHeights values_of(const ReliefValues& blend, BandHeights bands) {
+  for (std::vector<double>& band : bands) band = blend.values_of(band);
+  return bands;
+}
+
+ReliefValues measured_blend(const ReliefPatches& patches, double spacing) {
+  const MeasuredRelief& measured = patches.measured();
+  return {patches.points(), ReliefShares(measured.places, measured.tiles, spacing)};
+}
+
+// What is narrow of the bare surface itself: the mean of (n + n_j) . (p - p_j) / 2 over the places p_j around
+// each place p, with their normals. It is 0 on spheres and, to the second order, on all surfaces without
+// narrow bends, however the places lie.
+std::vector<double> base_details(const ReliefPoints& points, double edge) {
+  constexpr double kAround = 4.0;  // edges: standard deviation of the mean
+  ThreeFields at, normals, along;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d &p = points.at(i), &n = points.normal(i);
+    at[0].push_back(p.x), at[1].push_back(p.y), at[2].push_back(p.z);
+    normals[0].push_back(n.x), normals[1].push_back(n.y), normals[2].push_back(n.z);
+    along[0].push_back(dot(n, p));
+  }
+  at = smoothed_fields(points, at, kAround * edge);
+  normals = smoothed_fields(points, normals, kAround * edge);
+  along[0] = smoothed_heights(points, along[0], kAround * edge);
+  std::vector<double> details;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d offset = points.at(i) - Vec3d{at[0][i], at[1][i], at[2][i]},
+                normal{normals[0][i], normals[1][i], normals[2][i]};
+    details.push_back(0.5 * (dot(points.normal(i), offset) + dot(normal, points.at(i)) - along[0][i]));
+  }
+  return details;
+}
+
+// The bands of the measured surface, as coefficients. Heights alone would carry what makes up for the bends
+// of the base to places where the base has others.
+ReliefBands surface_bands(const ReliefPatches& patches, const ReliefValues& blend) {
+  const double edge = patches.anchor_spacing().edge;
+  std::vector<double> heights = blend.coefficients_of(base_details(patches.points(), edge));
+  add(patches.measured().heights, heights);
+  return {patches.points(), heights, edge};
 }
 
 }  // namespace
@@ -157,42 +133,54 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
                      "; keep the arrangement measured, or fit a finer model");
   }
   if (places.empty()) return {};  // a base that is smaller than the spacing
+  const ReliefPoints& of_measured = patches.points();
   std::optional<ReliefPoints> others;
   if (foreign) others.emplace(places, spacing);
-  const ReliefPoints& points = foreign ? *others : patches.points();
+  const ReliefPoints& points = foreign ? *others : of_measured;
   const ReliefValues blend(points, ReliefShares(places, tiles, spacing));
-  const DrawnAnchors drawn =
-      draw_anchors(foreign ? relief_anchors(points, {}, apart.distance(), 0.0) : anchors, anchors, options);
-  const std::vector<double> otherwise =
-      foreign ? std::vector<double>(places.size()) : blend.values_of(measured);
-  const std::vector<double> values = blended(patches, points, drawn, otherwise, options.hash);
-  return equalized(points, blend.coefficients_of(values), patches.points(), measured, apart.edge,
-                   options.fill);
+  const ReliefValues of_donors = foreign ? measured_blend(patches, spacing) : blend;
+  ReliefBands bands = surface_bands(patches, of_donors);
+  const BandRms wants = typical_rms(of_measured, values_of(of_donors, bands.bands), apart.edge, options.fill);
+  if (foreign) add(bands.rest, bands.bands.back());
+  const std::vector<ReliefAnchor> own = foreign ? relief_anchors(points, apart.distance()) : anchors;
+  std::vector<LaidHeights> laid(points.size());
+  lay_patches(patches, bands.bands, points, own, ReliefDonors(patches, own, options.reach, options.fill),
+              options.hash, laid);
+  std::vector<double> heights = equalized(points, blend, laid, wants, apart.edge, options.fill);
+  if (foreign) return heights;
+  add(measured, heights);
+  for (const std::vector<double>& band : bands.bands) add(band, heights, -1.0);
+  return heights;
 }
 
 std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
                                    const LikenessOptions& options) {
-  const MeasuredRelief& measured = patches.measured();
   const ReliefPoints& points = patches.points();
-  DrawnAnchors unseen;
-  std::vector<double> weights(points.size(), 0.0);  // of wide heights of all anchors
-  const DrawnAnchors drawn = draw_anchors(patches.anchors(), patches.anchors(), options);
-  for (std::size_t a = 0; a < drawn.anchors.size(); ++a) {
-    const ReliefAnchor& anchor = drawn.anchors[a];
-    for (const PatchPoint& p : points_around(points, anchor, patches.anchor_spacing().radius())) {
-      weights[p.number] += wide_weight(p);
+  std::vector<ReliefAnchor> unseen;
+  double smoothest = 0.0;
+  for (const ReliefAnchor& anchor : patches.anchors()) {
+    if (!anchor.unseen) continue;
+    unseen.push_back(anchor);
+    smoothest = std::max(smoothest, patches.squares_around()[anchor.place]);
+  }
+  if (unseen.empty()) return patches.measured().heights;
+  const ReliefValues blend = measured_blend(patches, spacing);
+  const ReliefBands bands = surface_bands(patches, blend);
+  std::vector<LaidHeights> before(points.size());
+  for (std::size_t b = 0; b < kReliefBands; ++b) {
+    const std::vector<double> values = blend.values_of(bands.bands[b]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      before[i].height[b] = static_cast<float>(values[i]);
+      before[i].cover[b] = patches.squares_around()[i] > smoothest ? 1.0f : 0.0f;
     }
-    if (anchor.unseen) unseen.anchors.push_back(anchor), unseen.donors.push_back(drawn.donors[a]);
   }
-  if (unseen.anchors.empty()) return measured.heights;
-  const ReliefValues blend(points, ReliefShares(measured.places, measured.tiles, spacing));
-  const std::vector<PatchSums> sums = sums_of(patches, points, unseen, options.hash);
-  std::vector<double> change = blend.values_of(measured.heights);
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    change[i] = sums[i].any() ? sums[i].low_weight / weights[i] * (sums[i].height() - change[i]) : 0.0;
-  }
+  std::vector<LaidHeights> laid = before;
+  lay_patches(patches, bands.bands, points, unseen,
+              ReliefDonors(patches, patches.anchors(), options.reach, options.fill), options.hash, laid);
+  std::vector<double> change(points.size());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = laid[i].sum() - before[i].sum();
   std::vector<double> heights = blend.coefficients_of(change);
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] += measured.heights[i];
+  add(patches.measured().heights, heights);
   return heights;
 }
 

@@ -15,10 +15,22 @@ constexpr double kWidestDistance = 16.0, kLeastDistance = 8.0, kLowBand = 2.5;
 constexpr std::size_t kEnoughAnchors = 40;
 constexpr int kLowExponent = 3;
 
-// The offset from the donor, turned.
+// The offset of a point from an anchor, laid at another one and turned.
 Vec3d carried(const PatchPoint& p, const ReliefAnchor& donor, const PatchTurn& turn) {
   return donor.at + (turn.cosine * p.x - turn.sine * p.y) * donor.right +
          (turn.sine * p.x + turn.cosine * p.y) * donor.ahead;
+}
+
+// Moves each foot along the line from the middle, so that it is as far from it as its point from the anchor.
+void keep_distances(const std::vector<PatchPoint>& points, const Vec3d& middle, GroundPoints& feet) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d offset = Vec3d{double{feet.x[i]}, double{feet.y[i]}, double{feet.z[i]}} - middle;
+    const double length = norm(offset);
+    if (!(length > 0.0)) continue;
+    const double wanted = std::sqrt(points[i].x * points[i].x + points[i].y * points[i].y);
+    const Vec3f moved = to_float(middle + (wanted / length) * offset);
+    feet.x[i] = moved.x, feet.y[i] = moved.y, feet.z[i] = moved.z;
+  }
 }
 
 }  // namespace
@@ -34,10 +46,6 @@ PatchTurn turn_of(std::uint32_t hash) {
                  y = 2.0 * double{unit_float(hash_append(hash, 1))} - 1.0, squared = x * x + y * y;
     if (squared <= 1.0 && squared > 1e-4) return {x / std::sqrt(squared), y / std::sqrt(squared)};
   }
-}
-
-double wide_weight(const PatchPoint& p) {
-  return portable::whole_power(p.near, kLowExponent) * (p.facing * p.facing);
 }
 
 double PatchSums::height() const { return low / low_weight + high / std::sqrt(high_squares); }
@@ -56,50 +64,54 @@ ReliefPatches::ReliefPatches(const MeasuredRelief& measured, double spacing, dou
       most_missed_(0.25 * spacing),
       apart_{edge, kWidestDistance} {
   for (std::size_t i = 0; i < high_.size(); ++i) high_[i] -= low_[i];
-  anchors_ = relief_anchors(points_, high_, apart_.distance(), apart_.radius());
-  if (anchors_.size() >= kEnoughAnchors) return;
-  const double share = std::sqrt(static_cast<double>(anchors_.size()) / static_cast<double>(kEnoughAnchors));
-  apart_.edges = std::max(kLeastDistance, share * kWidestDistance);
-  anchors_ = relief_anchors(points_, high_, apart_.distance(), apart_.radius());
+  anchors_ = relief_anchors(points_, apart_.distance());
+  if (anchors_.size() < kEnoughAnchors) {
+    const double share =
+        std::sqrt(static_cast<double>(anchors_.size()) / static_cast<double>(kEnoughAnchors));
+    apart_.edges = std::max(kLeastDistance, share * kWidestDistance);
+    anchors_ = relief_anchors(points_, apart_.distance());
+  }
+  squares_around_ = high_;
+  for (double& square : squares_around_) square *= square;
+  squares_around_ = smoothed_heights(points_, squares_around_, apart_.radius() / std::sqrt(8.0));
+  rank_roughness(squares_around_, anchors_);
 }
 
 std::vector<PatchHeight> ReliefPatches::heights_at(const std::vector<PatchPoint>& points,
                                                    const ReliefAnchor& donor, const PatchTurn& turn) const {
+  const ReliefRows rows = rows_at(points, donor, turn);
   std::vector<PatchHeight> patch;
-  std::vector<Vec3d> at;
-  const int high_exponent = apart_.high_exponent();
-  for (const PatchPoint& p : points) {
-    const double facing = p.facing * p.facing;
-    patch.push_back(
-        {p.number, wide_weight(p), portable::whole_power(p.near, high_exponent) * facing, 0.0, 0.0});
-    at.push_back(carried(p, donor, turn));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PatchPoint& p = points[i];
+    const double facing = rows.any(i) ? p.facing * p.facing : 0.0;
+    patch.push_back({p.number, portable::whole_power(p.near, kLowExponent) * facing,
+                     portable::whole_power(p.near, apart_.high_exponent()) * facing, rows.of(low_, i),
+                     rows.of(high_, i)});
   }
-  read(at, patch);
   return patch;
 }
 
-// Reads the heights where the points project to.
-void ReliefPatches::read(const std::vector<Vec3d>& at, std::vector<PatchHeight>& patch) const {
+ReliefRows ReliefPatches::rows_at(const std::vector<PatchPoint>& points, const ReliefAnchor& donor,
+                                  const PatchTurn& turn) const {
   constexpr int kProjections = 4;
-  if (at.empty()) return;
+  ReliefRows rows{{0}, {}, {}};
+  if (points.empty()) return rows;
+  std::vector<Vec3d> at;
+  for (const PatchPoint& p : points) at.push_back(carried(p, donor, turn));
   GroundPoints feet(at);
   const BodyGround& ground = measured_.ground;
   for (int i = 0; i < kProjections; ++i) {
+    if (i > 0) keep_distances(points, donor.at, feet);
     evaluate(ground, feet);
     project(ground, feet);
   }
   evaluate(ground, feet);
-  std::vector<std::uint32_t> places;
-  std::vector<float> shares;
-  for (std::size_t i = 0; i < patch.size(); ++i) {
-    places.clear(), shares.clear();
-    if (std::fabs(double{feet.distance[i]}) <= most_missed_) shares_.add(feet.at(i), places, shares);
-    if (places.empty()) patch[i].low_weight = patch[i].high_weight = 0.0;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      patch[i].low += double{shares[k]} * low_[places[k]];
-      patch[i].high += double{shares[k]} * high_[places[k]];
-    }
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (std::fabs(double{feet.distance[i]}) <= most_missed_)
+      shares_.add(feet.at(i), rows.places, rows.shares);
+    rows.first.push_back(rows.places.size());
   }
+  return rows;
 }
 
 }  // namespace astrolith

@@ -46,8 +46,19 @@ struct PatchPoint {
   double near, facing;
 };
 
-// The weight of a patch's wide heights at a point.
-double wide_weight(const PatchPoint& p);
+// What points take from the places of a relief (relief_shares.h): nothing where they miss the surface.
+struct ReliefRows {
+  std::vector<std::size_t> first;  // (points + 1) of the two lists
+  std::vector<std::uint32_t> places;
+  std::vector<float> shares;
+
+  bool any(std::size_t i) const { return first[i] < first[i + 1]; }
+  double of(const std::vector<double>& heights, std::size_t i) const {
+    double sum = 0.0;
+    for (std::size_t k = first[i]; k < first[i + 1]; ++k) sum += double{shares[k]} * heights[places[k]];
+    return sum;
+  }
+};
 
 // What a patch gives to a point, in two bands: heights smoothed by 2.5 edges, and the rest.
 struct PatchHeight {
@@ -68,20 +79,25 @@ class ReliefPatches {
   const ReliefPoints& points() const { return points_; }
   const AnchorSpacing& anchor_spacing() const { return apart_; }
   const std::vector<ReliefAnchor>& anchors() const { return anchors_; }
+  // The mean squares of narrow heights around all places, within a patch.
+  const std::vector<double>& squares_around() const { return squares_around_; }
+
+  // What the points take of the places where they lie around a donor: on the surface, as far from it.
+  ReliefRows rows_at(const std::vector<PatchPoint>& points, const ReliefAnchor& donor,
+                     const PatchTurn& turn) const;
 
   // What the donor's patch gives to points. A patch has no weight where its points miss the surface.
   std::vector<PatchHeight> heights_at(const std::vector<PatchPoint>& points, const ReliefAnchor& donor,
                                       const PatchTurn& turn) const;
 
  private:
-  void read(const std::vector<Vec3d>& at, std::vector<PatchHeight>& patch) const;
-
   MeasuredRelief measured_;
   ReliefPoints points_;
   ReliefShares shares_;
   std::vector<double> low_, high_;  // bands of the coefficients
   double most_missed_;              // length units
   AnchorSpacing apart_;
+  std::vector<double> squares_around_;
   std::vector<ReliefAnchor> anchors_;
 };
 

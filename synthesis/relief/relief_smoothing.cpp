@@ -169,6 +169,10 @@ std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vect
   return std::move(smoothed(points, {&heights, 1}, sigma, 1)[0]);
 }
 
+ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma) {
+  return smoothed(points, fields, sigma, 1);
+}
+
 SampledMeans sampled_means(const ReliefPoints& points, const ThreeFields& fields, double sigma) {
   constexpr std::size_t kEnoughCells = 4096;
   const std::size_t stride = std::max<std::size_t>(1, points.cells() / kEnoughCells);

@@ -101,9 +101,11 @@ class ReliefPoints {
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma);
 
-// The means of three fields at once, which takes hardly longer than those of one, around the places of cells
-// all over the body: all of them, or some thousand.
+// The same of three fields at once, which takes hardly longer.
 using ThreeFields = std::array<std::vector<double>, 3>;
+ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma);
+
+// The means of three fields around the places of cells all over the body: all of them, or some thousand.
 struct SampledMeans {
   std::vector<std::uint32_t> places;
   ThreeFields means;  // around each of these

@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "numerics/errors.h"
-#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/relief/relief_anchors.h"
+#include "synthesis/relief/relief_donors.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
@@ -18,11 +19,11 @@ using testing::places_of;
 using testing::position;
 using testing::potato_recipe;
 
-constexpr double kSpacing = 0.025;
+constexpr double kSpacing = 0.018, kEdge = kSpacing / 1.2;
 
 // A body with heights at its places: waves of many lengths, rough on the side of +x.
 struct Rough {
-  Recipe recipe = potato_recipe(60, 5);
+  Recipe recipe;
   ArrayStore arrays;
   BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
@@ -31,7 +32,7 @@ struct Rough {
   ReliefTiles tiles = make_relief_tiles(places, "test");
   std::vector<double> heights;
 
-  Rough() {
+  explicit Rough(Recipe of = potato_recipe(60, 5)) : recipe(std::move(of)) {
     for (const ReliefPlace& p : places) {
       const Vec3d at = position(p, kSpacing);
       const double wide = std::sin(17.0 * at.x) * std::sin(15.0 * at.y) * std::sin(16.0 * at.z);
@@ -39,10 +40,10 @@ struct Rough {
       heights.push_back(0.004 * wide + (at.x > 0.0 ? 0.004 : 0.001) * narrow);
     }
   }
-  ReliefPatches patches(double edge = kSpacing / 3.0) const {
+  ReliefPatches patches(double edge = kEdge) const {
     return {{ground, places, tiles, heights}, kSpacing, edge};
   }
-  std::vector<double> like(std::uint32_t seed, double edge = kSpacing / 3.0) const {
+  std::vector<double> like(std::uint32_t seed, double edge = kEdge) const {
     return like_heights(places, tiles, patches(edge), false, kSpacing, {0.3, false, seed}, "test");
   }
 };
@@ -118,7 +119,7 @@ TEST(ReliefLikeness, DrawsUnseenGroundFromSeenGround) {
     }
     return std::sqrt(mean_square(heights) / mean_square(rough.heights));
   };
-  EXPECT_LT(far_side(false), 0.2);
+  EXPECT_LT(far_side(false), 0.35);  // the bends of the base, in other places
   EXPECT_GT(far_side(true), 0.8);
 }
 
@@ -127,10 +128,14 @@ TEST(ReliefLikeness, LeavesGroundThatWasSeenEverywhereAsItIs) {
   EXPECT_EQ(filled_heights(rough.patches(), kSpacing, {0.3, true, 5}), rough.heights);
 }
 
-TEST(ReliefLikeness, KeepsAConstantHeight) {
-  Rough even;
+TEST(ReliefLikeness, KeepsAConstantHeightOnABaseWithoutBends) {
+  Rough even(testing::sphere_recipe(0.4));
   even.heights.assign(even.places.size(), 0.01);
-  for (const double height : even.like(3)) ASSERT_NEAR(height, 0.01, 1e-7);
+  const std::vector<double> like = even.like(3);
+  for (std::size_t i = 0; i < like.size(); ++i) {
+    if (even.places[i].weight < 32768) continue;  // others count for little
+    ASSERT_NEAR(like[i], 0.01, 3e-4);
+  }
 }
 
 TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
@@ -163,7 +168,7 @@ TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {
 
 TEST(ReliefLikeness, RefusesABodyOfFewPatches) {
   const Rough rough;
-  const std::string refused = testing::refusal_of([&] { rough.like(1, kSpacing * 4.0); });
+  const std::string refused = testing::refusal_of([&] { rough.like(1, 0.1); });
   EXPECT_TRUE(testing::has(refused, "test: the body has room for 4 patches of its relief"));
 }
 
@@ -171,7 +176,7 @@ TEST(ReliefAnchors, LieApartAndReachEveryPlace) {
   const Rough rough;
   const ReliefPoints points(rough.places, kSpacing);
   const double distance = 0.15;
-  const std::vector<ReliefAnchor> anchors = relief_anchors(points, rough.heights, distance, distance);
+  const std::vector<ReliefAnchor> anchors = relief_anchors(points, distance);
   std::set<std::uint32_t> reached;
   for (const ReliefAnchor& a : anchors) {
     EXPECT_NEAR(dot(cross(a.right, a.ahead), a.up), 1.0, 1e-6);
@@ -184,25 +189,27 @@ TEST(ReliefAnchors, LieApartAndReachEveryPlace) {
   EXPECT_EQ(reached.size(), points.size());
 }
 
-TEST(ReliefAnchors, HaveDonorsWithinReachOfLikeRoughness) {
+TEST(ReliefDonors, LieWithinReachAndAreAsRough) {
   const Rough rough;
-  const ReliefPoints points(rough.places, kSpacing);
-  const std::vector<ReliefAnchor> anchors = relief_anchors(points, rough.heights, 0.12, 0.2);
+  const ReliefPatches patches = rough.patches();
+  const ReliefDonors donors(patches, patches.anchors(), 0.3, false);
+  const double apart = patches.anchor_spacing().distance();
   Box box;
-  for (const ReliefAnchor& a : anchors) box.extend(a.at);
-  const double reach = 0.25 * box.diagonal();
-  const std::vector<std::uint32_t> donors = relief_donors(anchors, anchors, 0.25, false, 7),
-                                   others = relief_donors(anchors, anchors, 0.25, false, 8);
-  int same = 0;
-  double unlike = 0.0;
-  for (std::size_t a = 0; a < anchors.size(); ++a) {
-    ASSERT_NE(donors[a], a);
-    EXPECT_LT(norm(anchors[donors[a]].at - anchors[a].at), reach);
-    same += donors[a] == others[a];
-    unlike += std::fabs(anchors[donors[a]].roughness - anchors[a].roughness);
+  for (const ReliefAnchor& a : patches.anchors()) box.extend(a.at);
+  double unlike = 0.0, all = 0.0;
+  for (const ReliefAnchor& a : patches.anchors()) {
+    const std::vector<ReliefDonor> drawn = donors.candidates(a, 16, 7), again = donors.candidates(a, 16, 7);
+    ASSERT_EQ(drawn.size(), 16u);
+    EXPECT_EQ(drawn[3].middle.place, again[3].middle.place);
+    for (const ReliefDonor& donor : drawn) {
+      EXPECT_GE(norm(donor.middle.at - a.at), apart);
+      EXPECT_LE(norm(donor.middle.at - a.at), 0.3 * box.diagonal());
+      unlike += std::fabs(
+          std::log(patches.squares_around()[donor.middle.place] / patches.squares_around()[a.place]));
+      all += 1.0;
+    }
   }
-  EXPECT_LT(same, static_cast<int>(anchors.size()) / 2);
-  EXPECT_LT(unlike / static_cast<double>(anchors.size()), 0.15);
+  EXPECT_LT(unlike / all, 0.35);
 }
 
 }  // namespace
