@@ -47,6 +47,8 @@ inline constexpr double kWantedBandRatio[] = {0.85, 1.15}, kWantedCouplingRatio 
 struct RealismVerdict {
   // p >= kPassingP and largest_distance <= kPassingDistance, of surfaces that are not too coarse.
   bool passes = false;
+  // Where the second surface has other parts or handles than the first, both in words: it does not pass then.
+  std::string other_topology;
   // The surfaces have fewer points than kFewestJudged, and the test found no difference, which says nothing.
   bool too_coarse = false;
   std::int64_t points = 0;        // that each surface was evened to

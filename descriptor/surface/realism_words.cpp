@@ -78,6 +78,7 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
     }
   }
   std::vector<std::string> all;
+  if (!verdict.other_topology.empty()) all.push_back(verdict.other_topology);
   for (const Band& band : bands) all.push_back(length_range(band, verdict, lengths));
   all.insert(all.end(), others.begin(), others.end());
   if (all.empty()) all.emplace_back("differs, and no single statistic says in what");

@@ -51,6 +51,15 @@ ASTROLITH_HD inline ReliefTilePair tiles_of_part(std::int32_t tile, const Relief
   return {part.w.low > high ? split.upper : split.lower, part.w.high < low ? split.lower : split.upper};
 }
 
+// Whether all points of a part belong to the sheet of a tile in full (reach_of_sheet).
+ASTROLITH_HD inline bool reaches_part(const ReliefSheet& s, const ReliefPart::Along& part) {
+  constexpr double kRounding = 1e-4;  // spacings
+  const Interval by_u = scaled(s.of_u, part.u), by_v = scaled(s.of_v, part.v);
+  const double low = part.w.low - (s.at + by_u.high + by_v.high),
+               high = part.w.high - (s.at + by_u.low + by_v.low);
+  return std::max(-low, high) + kRounding < s.farthest - 1.0 / s.inverse_fade;
+}
+
 // The places along one side of a tile that points in `at` read.
 struct ReliefPlacesAlong {
   std::int32_t first, last;
@@ -80,22 +89,18 @@ ASTROLITH_HD inline void extend_codes(const std::uint32_t* words, const Interval
   }
 }
 
-// A bound of how the sum of w (height - reference) over a tile changes from the middle of a part on, where w
-// are the weights.
-ASTROLITH_HD inline double change_of_sum(const ReliefNoise& n, const std::uint32_t* words, const Interval& u,
-                                         const Interval& v, double reference) {
+// A bound of how the sum of of_word(word) over a tile changes from the middle of a part on.
+template <class OfWord>
+ASTROLITH_HD double change_of_sum(const std::uint32_t* words, const Interval& u, const Interval& v,
+                                  const OfWord& of_word) {
   const ReliefPlacesAlong row = places_along(u), column = places_along(v);
-  const auto product = [&](std::int32_t i, std::int32_t j) {
-    const std::uint32_t word = words[j * kReliefTileSide + i];
-    const double height = double{n.low} + double{n.step} * static_cast<double>(word & 0xffffu);
-    return static_cast<double>(word >> 16) * (height - reference);
-  };
+  const auto at = [&](std::int32_t i, std::int32_t j) { return of_word(words[j * kReliefTileSide + i]); };
   double along_u = 0.0, along_v = 0.0;
   for (std::int32_t j = column.first; j <= column.last; ++j) {
     for (std::int32_t i = row.first; i <= row.last; ++i) {
-      const double here = product(i, j);
-      if (i > row.first) along_u = std::max(along_u, std::fabs(here - product(i - 1, j)));
-      if (j > column.first) along_v = std::max(along_v, std::fabs(here - product(i, j - 1)));
+      const double here = at(i, j);
+      if (i > row.first) along_u = std::max(along_u, std::fabs(here - at(i - 1, j)));
+      if (j > column.first) along_v = std::max(along_v, std::fabs(here - at(i, j - 1)));
     }
   }
   return 0.5 * ((u.high - u.low) * along_u + (v.high - v.low) * along_v);
@@ -104,14 +109,14 @@ ASTROLITH_HD inline double change_of_sum(const ReliefNoise& n, const std::uint32
 // An interval that holds the height, before rounding, at every point of a part of a cell, length units.
 ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& arrays,
                                         const ReliefPart& part) {
-  constexpr std::uint32_t kHardlyAny = 512;  // below this weight 0 is near (relief_mean)
-  constexpr double kNarrow = 1.0;            // spacings; slopes say little of wider parts
+  constexpr double kEnough = 1.001 * double{kLeastReliefWeight};  // below this weight 0 is near (relief_mean)
+  constexpr double kNarrow = 1.0;  // spacings; slopes say little of wider parts
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{part.cell};
   const std::uint32_t* words = arrays[n.words];
   ReliefTilePair of_axis[3];
   ReliefCodes all;
-  std::uint32_t weight = 0;
-  bool one_tile = true;
+  std::uint32_t least_weight = 0;
+  bool one_tile = true, in_full = true;
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
     const ReliefTilePair pair = of_axis[a] = tiles_of_part(tiles[a], arrays[n.splits], at);
@@ -119,21 +124,32 @@ ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& a
     all.weight = 0xffff;
     extend_codes(words + kReliefTileSize * pair.lower, at.u, at.v, all);
     if (pair.upper != pair.lower) extend_codes(words + kReliefTileSize * pair.upper, at.u, at.v, all);
-    weight += all.weight;
+    least_weight += all.weight;
     one_tile = one_tile && pair.upper == pair.lower;
+    in_full = in_full && reaches_part(arrays[n.sheets][pair.lower], at) &&
+              reaches_part(arrays[n.sheets][pair.upper], at);
   }
   if (all.least > all.greatest) return {0.0, 0.0};
   const Interval hull{double{n.low} + double{n.step} * all.least,
                       double{n.low} + double{n.step} * all.greatest};
-  if (weight < kHardlyAny) return {std::min(hull.low, 0.0), std::max(hull.high, 0.0)};
-  if (!one_tile || part.width() > kNarrow) return hull;
-  const double middle = height_in_lattice(n, arrays, part.middle());
-  double change = 0.0;
+  const Interval with_zero{std::min(hull.low, 0.0), std::max(hull.high, 0.0)};
+  if (!in_full) return with_zero;
+  if (!one_tile || part.width() > kNarrow) return least_weight < kEnough ? with_zero : hull;
+  const ReliefSums sums = sums_in_lattice(n, words, arrays, part.middle());
+  const double middle = double{relief_mean(n.low, n.step, sums)};
+  double weight = double{sums.weight}, change = 0.0;
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
-    change += change_of_sum(n, words + kReliefTileSize * of_axis[a].lower, at.u, at.v, middle);
+    const std::uint32_t* of_tile = words + kReliefTileSize * of_axis[a].lower;
+    weight -= change_of_sum(of_tile, at.u, at.v,
+                            [](std::uint32_t word) { return static_cast<double>(word >> 16); });
+    change += change_of_sum(of_tile, at.u, at.v, [&](std::uint32_t word) {
+      const double height = double{n.low} + double{n.step} * static_cast<double>(word & 0xffffu);
+      return static_cast<double>(word >> 16) * (height - middle);
+    });
   }
-  change /= static_cast<double>(weight);
+  if (weight < kEnough) return least_weight < kEnough ? with_zero : hull;
+  change /= weight;
   return {std::max(hull.low, middle - change), std::min(hull.high, middle + change)};
 }
 

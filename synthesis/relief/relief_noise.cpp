@@ -165,12 +165,12 @@ ASTROLITH_SIMD_CLONES void find_cells(const ReliefNoise& of_layer, int n, const 
   }
 }
 
-// Makes the first words of tiles those of the footprints of points, and the points' places those in them.
+// Makes numbers of tiles the first words of the footprints of points, and the points' places those in them.
 ASTROLITH_SIMD_CLONES void find_footprints(int n, std::int32_t* __restrict first, float* __restrict u,
                                            float* __restrict v) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    const ReliefFootprint f = relief_footprint(first[i], u[i], v[i]);
+    const ReliefFootprint f = relief_footprint(kReliefTileSize * first[i], u[i], v[i]);
     first[i] = f.first, u[i] = f.u, v[i] = f.v;
   }
 }
@@ -179,7 +179,8 @@ ASTROLITH_SIMD_CLONES void find_footprints(int n, std::int32_t* __restrict first
 // footprint, whose words are read once for all of them; four at a time, as many as a normal takes.
 ASTROLITH_SIMD_CLONES void add_footprints(const std::uint32_t* words, const std::int32_t* __restrict first,
                                           int n, const float* __restrict u, const float* __restrict v,
-                                          float* __restrict weight, float* __restrict code) {
+                                          const float* __restrict reach, float* __restrict weight,
+                                          float* __restrict code) {
   for (int begin = 0, end = 0; begin < n; begin = end) {
     while (end < n && first[end] == first[begin]) ++end;
     if (first[begin] < kReliefTileSize) continue;  // the empty tile adds exactly nothing
@@ -187,10 +188,18 @@ ASTROLITH_SIMD_CLONES void add_footprints(const std::uint32_t* words, const std:
 #pragma omp simd simdlen(4)
     for (int i = begin; i < end; ++i) {
       ReliefSums sums{weight[i], code[i]};
-      add_relief_words(of_all, u[i], v[i], sums);
+      add_relief_words(of_all, u[i], v[i], reach[i], sums);
       weight[i] = sums.weight, code[i] = sums.code;
     }
   }
+}
+
+// Writes the reaches of the sheets of these tiles.
+ASTROLITH_SIMD_CLONES void find_reaches(const ReliefSheet* sheets, const std::int32_t* __restrict tile, int n,
+                                        const float* __restrict u, const float* __restrict v,
+                                        const float* __restrict w, float* __restrict reach) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) reach[i] = reach_of_sheet(sheets[tile[i]], u[i], v[i], w[i]);
 }
 
 ASTROLITH_SIMD_CLONES void find_means(float low, float step, int n, const float* __restrict weight,
@@ -199,11 +208,12 @@ ASTROLITH_SIMD_CLONES void find_means(float low, float step, int n, const float*
   for (int i = 0; i < n; ++i) mean[i] = relief_mean(low, step, {weight[i], code[i]});
 }
 
-// The footprints of points on their tiles of each axis.
+// The footprints of points on their tiles of each axis, and the reaches of these tiles' sheets.
 struct ChunkPlaces {
   int count;
   std::array<std::array<float, kChunk>, 3> u, v;
   std::array<std::array<std::int32_t, kChunk>, 3> first;
+  std::array<std::array<float, kChunk>, 3> reach;
   std::array<bool, 3> any{};  // whether a tile of the axis is not the empty one, which adds exactly nothing
 
   ChunkPlaces(const ReliefNoise& n, const ArrayView& arrays, int points, const float* px, const float* py,
@@ -217,11 +227,14 @@ struct ChunkPlaces {
     for (std::size_t a = 0; a < 3; ++a) {
       u[a] = at[(a + 1) % 3], v[a] = at[(a + 2) % 3];
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        const std::int32_t tile = tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)];
-        first[a][i] = kReliefTileSize * relief_tile(tile, splits, u[a][i], v[a][i], at[a][i]);
+        const std::int32_t of_axis = tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)];
+        first[a][i] = relief_tile(of_axis, splits, u[a][i], v[a][i], at[a][i]);
         any[a] |= first[a][i] != 0;
       }
-      if (any[a]) find_footprints(count, first[a].data(), u[a].data(), v[a].data());
+      if (!any[a]) continue;
+      find_reaches(arrays[n.sheets], first[a].data(), count, u[a].data(), v[a].data(), at[a].data(),
+                   reach[a].data());
+      find_footprints(count, first[a].data(), u[a].data(), v[a].data());
     }
   }
 
@@ -232,7 +245,8 @@ struct ChunkPlaces {
     std::fill_n(code.data(), count, 0.0f);
     for (std::size_t a = 0; a < 3; ++a) {
       if (!any[a]) continue;
-      add_footprints(words, first[a].data(), count, u[a].data(), v[a].data(), weight.data(), code.data());
+      add_footprints(words, first[a].data(), count, u[a].data(), v[a].data(), reach[a].data(), weight.data(),
+                     code.data());
     }
     find_means(low, step, count, weight.data(), code.data(), mean);
   }
@@ -292,6 +306,7 @@ ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, con
   }
   noise.tiles = arrays.add(tiles.tiles);
   noise.splits = arrays.add(tiles.splits);
+  noise.sheets = arrays.add(tiles.sheets);
   noise.words = arrays.add(words_of(ground, ground.codes));
   noise.ranges = arrays.add(ranges_of(tiles, ground.codes));
   for (const std::uint16_t code : ground.codes) {

@@ -1,5 +1,7 @@
 // A relief layer of the recipe as plain tables: its height at one point of the bare surface, and over many
-// points at once. The equation stands at ReliefLayer (recipe/relief_layer.h).
+// points at once. The equation stands at ReliefLayer (recipe/relief_layer.h). Heights belong to the
+// surface: where the projection of a point misses it, a map counts only near its sheet, and beside all sheets
+// the height falls to 0.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +38,7 @@ struct ReliefNoise {
   float low = 0.0f, step = 0.0f;   // the height of code 0, and of a code above the one before; length units
   ArrayRange<std::int32_t> tiles;  // (cells x 3) ReliefTiles::tiles
   ArrayRange<ReliefSplit> splits;
+  ArrayRange<ReliefSheet> sheets;      // (tiles)
   ArrayRange<std::uint32_t> words;     // (tiles x kReliefTileSize) weight << 16 | code
   ArrayRange<ReliefCodeRange> ranges;  // (cells)
   ReliefLevels below;                  // below the edges of the model
@@ -69,10 +72,17 @@ ASTROLITH_KERNEL CubicWeights cubic_weights(float t) {
           math::fma(0.5f * s - 1.0f, s2, 2.0f / 3.0f), kSixth * t2 * t};
 }
 
-// The sums over the places of a tile around a point: of weights, and of weights times codes.
+// The sums over the places of the tiles around a point: of weights, and of weights times codes. Near its
+// sheet a tile counts in full, far from it not at all.
 struct ReliefSums {
   float weight = 0.0f, code = 0.0f;
 };
+
+// 1 near a sheet, 0 far from it. `off` is the distance from its plane along its axis, in spacings.
+ASTROLITH_KERNEL float reach_of_sheet(const ReliefSheet& s, float u, float v, float w) {
+  const float off = w - math::fma(s.of_u, u, math::fma(s.of_v, v, s.at));
+  return math::clamp((s.farthest - math::abs(off)) * s.inverse_fade, 0.0f, 1.0f);
+}
 
 // The places of a tile around a point: four rows of four words, each kReliefTileSide after the one before.
 // The point lies (u, v) in [0, 1] beyond the second word of the second row.
@@ -103,13 +113,18 @@ ASTROLITH_KERNEL void add_relief_row(const std::uint32_t* row, const CubicWeight
   add(row[3], u.w3 * v);
 }
 
-// Adds the words of a footprint, of which `first` is the first, to the sums.
-ASTROLITH_KERNEL void add_relief_words(const std::uint32_t* first, float u, float v, ReliefSums& sums) {
+// Adds the words of a footprint, of which `first` is the first, to the sums, as words of a tile of this
+// reach.
+ASTROLITH_KERNEL void add_relief_words(const std::uint32_t* first, float u, float v, float reach,
+                                       ReliefSums& sums) {
   const CubicWeights wu = cubic_weights(u), wv = cubic_weights(v);
-  add_relief_row(first, wu, wv.w0, sums);
-  add_relief_row(first + kReliefTileSide, wu, wv.w1, sums);
-  add_relief_row(first + 2 * kReliefTileSide, wu, wv.w2, sums);
-  add_relief_row(first + 3 * kReliefTileSide, wu, wv.w3, sums);
+  ReliefSums tile;
+  add_relief_row(first, wu, wv.w0, tile);
+  add_relief_row(first + kReliefTileSide, wu, wv.w1, tile);
+  add_relief_row(first + 2 * kReliefTileSide, wu, wv.w2, tile);
+  add_relief_row(first + 3 * kReliefTileSide, wu, wv.w3, tile);
+  sums.weight = math::fma(reach, tile.weight, sums.weight);
+  sums.code = math::fma(reach, tile.code, sums.code);
 }
 
 // A point in the lattice: its cell, and its place there in spacings from the corner of the cell.
@@ -143,10 +158,13 @@ ASTROLITH_HD inline std::int32_t relief_tile(std::int32_t tile, const ReliefSpli
   return w > math::fma(s.of_u, u, math::fma(s.of_v, v, s.at)) ? s.upper : s.lower;
 }
 
-// The mean of low + step * code with these sums. Where no place has a weight, it is 0.
+// Around a point of a smooth surface the weights sum to 65535 (1/3 - 1/5)^2 / (4/5)^2 * 3 = 5461 at least.
+// Where they sum to less than this, the point is beside the surface that the places show.
+inline constexpr float kLeastReliefWeight = 4096.0f;
+
+// The mean of low + step * code with these sums. It falls to 0 beside the surface.
 ASTROLITH_KERNEL float relief_mean(float low, float step, const ReliefSums& sums) {
-  constexpr float kHardlyAny = 1e-3f;  // of 65535
-  return math::fma(step, sums.code, low * sums.weight) / (sums.weight + kHardlyAny);
+  return math::fma(step, sums.code, low * sums.weight) / math::max(sums.weight, kLeastReliefWeight);
 }
 
 // The sums of these words around a point of the lattice.
@@ -154,10 +172,12 @@ ASTROLITH_HD inline ReliefSums sums_in_lattice(const ReliefNoise& n, const std::
                                                const ArrayView& arrays, const ReliefPoint& p) {
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{p.cell};
   const ReliefSplit* splits = arrays[n.splits];
+  const ReliefSheet* sheets = arrays[n.sheets];
   ReliefSums sums;
-  const auto add = [&](std::int32_t tile, float u, float v, float w) {
-    const ReliefFootprint f = relief_footprint(kReliefTileSize * relief_tile(tile, splits, u, v, w), u, v);
-    add_relief_words(words + f.first, f.u, f.v, sums);
+  const auto add = [&](std::int32_t of_axis, float u, float v, float w) {
+    const std::int32_t tile = relief_tile(of_axis, splits, u, v, w);
+    const ReliefFootprint f = relief_footprint(kReliefTileSize * tile, u, v);
+    add_relief_words(words + f.first, f.u, f.v, reach_of_sheet(sheets[tile], u, v, w), sums);
   };
   add(tiles[0], p.y, p.z, p.x);
   add(tiles[1], p.z, p.x, p.y);

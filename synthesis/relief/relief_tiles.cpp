@@ -7,6 +7,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/scalar_math.h"
 
 namespace astrolith {
 namespace {
@@ -153,22 +154,40 @@ class CellSheets {
   std::int32_t u_, v_, w_;
 };
 
-// The plane w = at + of_u u + of_v v through the middle of a sheet, in spacings from the corner of the cell.
-ReliefSplit middle_plane(const Lines& lines, const Sheet& sheet, std::int32_t u0, std::int32_t v0,
+// The plane through the middle of a sheet within its cell, and how far the places there are from it. The
+// corner of the cell is (u0, v0, w0).
+ReliefSheet middle_plane(const Lines& lines, const Sheet& sheet, std::int32_t u0, std::int32_t v0,
                          std::int32_t w0) {
-  float u = 0, v = 0, w = 0, of_u = 0, of_v = 0, n = 0;
-  for (const std::uint32_t number : sheet.places) {
-    if (number == kNoPlace) continue;
-    const ReliefPlace& p = lines.place(number);
-    u += static_cast<float>(p.u - u0), v += static_cast<float>(p.v - v0), w += p.w - static_cast<float>(w0);
-    of_u += slope(p, 1, 0), of_v += slope(p, 0, 1);
+  constexpr float kNear = 0.5f, kFade = 0.5f;  // spacings; twice what feet of samples miss the surface by
+  const auto for_each = [&](const auto& visit) {
+    for (const std::uint32_t number : sheet.places) {
+      if (number == kNoPlace) continue;
+      const ReliefPlace& p = lines.place(number);
+      const std::int32_t u = p.u - u0, v = p.v - v0;
+      if (u < 0 || u > kReliefCell || v < 0 || v > kReliefCell) continue;
+      visit(p, static_cast<float>(u), static_cast<float>(v), p.w - static_cast<float>(w0));
+    }
+  };
+  ReliefSheet plane{};
+  float u = 0, v = 0, w = 0, n = 0;
+  for_each([&](const ReliefPlace& p, float at_u, float at_v, float at_w) {
+    u += at_u, v += at_v, w += at_w;
+    plane.of_u += slope(p, 1, 0), plane.of_v += slope(p, 0, 1);
     n += 1.0f;
-  }
-  of_u /= n, of_v /= n;
-  return {w / n - of_u * (u / n) - of_v * (v / n), of_u, of_v, 0, 0};
+  });
+  plane.of_u /= n, plane.of_v /= n;
+  plane.at = w / n - plane.of_u * (u / n) - plane.of_v * (v / n);
+  float off = 0.0f;
+  for_each([&](const ReliefPlace&, float at_u, float at_v, float at_w) {
+    off = std::max(off, std::abs(at_w - (plane.at + plane.of_u * at_u + plane.of_v * at_v)));
+  });
+  const float steep = math::sqrt(1.0f + plane.of_u * plane.of_u + plane.of_v * plane.of_v);
+  plane.farthest = off + (kNear + kFade) * steep;
+  plane.inverse_fade = 1.0f / (kFade * steep);
+  return plane;
 }
 
-float middle_value(const ReliefSplit& plane) {
+float middle_value(const ReliefSheet& plane) {
   return plane.at + 0.5f * static_cast<float>(kReliefCell) * (plane.of_u + plane.of_v);
 }
 
@@ -188,17 +207,18 @@ struct FoundSheets {
 };
 
 void add_cell(const Lines& lines, const FoundSheets& found, ReliefTiles& to) {
+  const auto& [u, v, w] = found.corner;
   const auto add_tile = [&](const Sheet& sheet) {
     to.places.insert(to.places.end(), sheet.places.begin(), sheet.places.end());
+    to.sheets.push_back(middle_plane(lines, sheet, u, v, w));
     return static_cast<std::int32_t>(to.num_tiles() - 1);
   };
   const std::int32_t first = add_tile(found.sheets[0]);
   to.tiles[found.slot] = first;
   if (found.sheets.size() < 2) return;
-  const auto& [u, v, w] = found.corner;
-  const ReliefSplit a = middle_plane(lines, found.sheets[0], u, v, w),
-                    b = middle_plane(lines, found.sheets[1], u, v, w);
   const std::int32_t second = add_tile(found.sheets[1]);
+  const ReliefSheet &a = to.sheets[static_cast<std::size_t>(first)],
+                    &b = to.sheets[static_cast<std::size_t>(second)];
   const bool first_is_upper = middle_value(a) > middle_value(b);
   to.tiles[found.slot] = -1 - static_cast<std::int32_t>(to.splits.size());
   to.splits.push_back({0.5f * (a.at + b.at), 0.5f * (a.of_u + b.of_u), 0.5f * (a.of_v + b.of_v),
@@ -230,6 +250,7 @@ bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, Ti
 ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where) {
   ReliefTiles made;
   made.places.assign(kReliefTileSize, kNoPlace);
+  made.sheets.push_back({});
   if (places.empty()) return made;
   std::array<std::int32_t, 3> high;
   made.low.fill(std::numeric_limits<std::int32_t>::max());

@@ -3,6 +3,8 @@
 // Space is cut into cubic cells, kReliefCell spacings wide. In a cell a map of one axis is a tile: the places
 // on the lines in and next to the cell that belong to one sheet of the surface. Where two sheets of one axis
 // pass through a cell, as at a thin rim, a plane between them tells which of two tiles a point belongs to.
+// The projection of a point far from the surface may miss the sheet; then the heights of the tile are not its
+// own.
 #pragma once
 
 #include <array>
@@ -28,6 +30,14 @@ struct ReliefSplit {
   std::int32_t lower, upper;
 };
 
+// Where the heights of a tile are those of points: in full within farthest - 1 / inverse_fade of the plane
+// w = at + of_u u + of_v v, along the axis, and nowhere from `farthest` on. In spacings from the corner of
+// the cell.
+struct ReliefSheet {
+  float at, of_u, of_v;
+  float farthest, inverse_fade;
+};
+
 struct ReliefTiles {
   std::array<std::int32_t, 3> low{}, count{};  // cells: the first one along each axis, and how many
   // (cells x 3) For each cell, x fastest, and axis: the number of the tile, or -1 - number of the split. Tile
@@ -37,6 +47,7 @@ struct ReliefTiles {
   // (tiles x kReliefTileSize) The number of the place on each line of a tile, u fastest; kNoPlace without
   // one.
   std::vector<std::uint32_t> places;
+  std::vector<ReliefSheet> sheets;  // (tiles)
 
   std::size_t num_tiles() const { return places.size() / kReliefTileSize; }
 };

@@ -10,6 +10,7 @@
 #include "estimation/shape/details/imaged_ground.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
+#include "estimation/shape/target/parts_and_handles.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -22,6 +23,7 @@
 #include "tasks/estimation/fit_checkpoint.h"
 #include "tasks/estimation/fit_realism.h"
 #include "tasks/estimation/fit_time_limit.h"
+#include "tasks/estimation/relief_mending.h"
 #include "tasks/estimation/relief_size.h"
 #include "tasks/estimation/repaired_target.h"
 #include "tasks/estimation/shape_recipe.h"
@@ -119,6 +121,21 @@ void add_details(Job& job, const FitArguments& arguments, const TargetBody& targ
   if (job.stopped()) return;
   if (!recipe.layers.empty()) fit.base_mesh = std::move(fit.check.mesh);
   measure_recipe(target, recipe, arguments.fit, fit);
+  if (!wanted.keeps_relief() || !job.summary["relief"].contains("heights")) return;
+  const std::size_t halved = mend_relief(target, arguments.fit, static_cast<std::size_t>(arguments.bytes),
+                                         job.progress("topology"), recipe, fit);
+  job.summary["relief"]["halved_heights"] = halved;
+  if (halved > 0)
+    job.say(fmt::format("relief: {} halved where it made parts or handles that the target lacks",
+                        counted(halved, "height")));
+}
+
+// What to do about a topology that is not the target's. `base` is the mesh of the metaballs alone, where
+// there are details too.
+std::string remedy_of_topology(const PartsAndHandles& wanted, const TriangleMesh& base) {
+  if (!base.triangles.empty() && parts_and_handles(analyze_topology(base)) == wanted)
+    return "the metaballs alone, --base-only, have the target's";
+  return "try another --seed, or another number of --spheres";
 }
 
 void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& fit, bool with_details) {
@@ -135,13 +152,10 @@ void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& 
                   counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
                   with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without,
                   100 * fit.similarity, 100 * fit.similarity_floor));
-  const MeshTopology& made = fit.check.topology;
-  const std::int64_t handles = analyze_topology(target.mesh).genus;
-  if (made.components != target.components || made.genus != handles) {
-    job.say(fmt::format(
-        "note: the fit has {} and {}, the target {} and {}; give it more --spheres, or another --seed",
-        counted(made.components, "part"), counted(made.genus, "handle"), counted(target.components, "part"),
-        counted(handles, "handle")));
+  const PartsAndHandles made = parts_and_handles(fit.check.topology), wanted = parts_and_handles(target);
+  if (made != wanted) {
+    job.say(fmt::format("note: the fit has {}, the target {}; {}", made.words(), wanted.words(),
+                        remedy_of_topology(wanted, fit.base_mesh)));
   }
 }
 
@@ -344,6 +358,9 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
   const std::optional<FitRealism> realism = judge_surface(job, arguments, target, recipe, limit);
   if (!arguments.report.empty()) write_report(arguments, target, fit, recipe, realism);
   job.summary.update(fit_figures(fit));
+  const PartsAndHandles wanted = parts_and_handles(target);
+  job.summary["target_components"] = wanted.parts;
+  job.summary["target_genus"] = wanted.handles;
   job.summary["stopped_early"] = limit.reached();
   if (arguments.details.variations > 0) add_variations(job, arguments, target, recipe, limit);
   say_result(job, target, fit, !recipe.layers.empty());

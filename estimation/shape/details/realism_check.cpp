@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/shape/target/parts_and_handles.h"
 #include "numerics/reported_loop.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
@@ -71,6 +72,12 @@ FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int see
     result.fit = std::move(fit);
   }
   result.verdict = median_verdict(result.verdict_of_seed);
+  const PartsAndHandles wanted = parts_and_handles(target),
+                        made = parts_and_handles(analyze_topology(result.mesh));
+  if (made != wanted) {
+    result.verdict.passes = false;
+    result.verdict.other_topology = "has " + made.words() + ", the target " + wanted.words();
+  }
   return result;
 }
 

@@ -23,8 +23,9 @@ struct FitRealism {
 // Meshes the recipe (in the file's frame) with twice the target's triangles, at most 240,000, once for each
 // seed; a body without layers has one mesh. Marching cubes need so many, since part of their triangles are
 // slivers: the target itself, meshed anew with as many triangles as it has, is a little too smooth. Both
-// surfaces are sampled alike (descriptor/surface). Throws InputError for a target that surface_statistics()
-// refuses, and WorkError when progress asks to stop.
+// surfaces are sampled alike (descriptor/surface). A fit with other parts or handles than the target's does
+// not pass. Throws InputError for a target that surface_statistics() refuses, and WorkError when progress
+// asks to stop.
 FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
                          const Progress& progress);
 

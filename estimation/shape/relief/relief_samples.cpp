@@ -8,6 +8,7 @@
 #include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/body/ground_points.h"
+#include "synthesis/relief/relief_noise.h"
 
 namespace astrolith {
 namespace {
@@ -93,7 +94,7 @@ class SampleFinder {
       placed.sample.height = -v.distance[i];
       const float total = weight_around(made_.weights.data(), placed.tiles, placed.sample.at);
       if (!(total > 0.0f)) continue;
-      placed.sample.scale = 1.0f / total;
+      placed.sample.scale = 1.0f / std::max(total, kLeastReliefWeight);
       samples.push_back(placed);
     }
     return samples;

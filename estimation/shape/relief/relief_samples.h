@@ -18,7 +18,7 @@ namespace astrolith {
 struct ReliefSample {
   std::array<float, 3> at;  // in spacings from the corner of its cell
   float height;             // the height that brings the layered surface to the measured point, length units
-  float scale;              // 1 / the sum over the places around of weight times B (recipe/relief_layer.h)
+  float scale;              // 1 / the sum over the places around of weight times B, as relief_mean() divides
 };
 
 // The samples first to end - 1. They read the same tiles.

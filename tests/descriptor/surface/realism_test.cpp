@@ -47,6 +47,13 @@ TEST(Realism, ABodySampledAgainPasses) {
   EXPECT_EQ(realism_words(verdict, {}), std::vector<std::string>{"passes"});
 }
 
+TEST(Realism, OtherTopologyIsSaidFirst) {
+  RealismVerdict verdict = judge_realism(waves(0.01, 1, 1), waves(0.01, 1, 2), {});
+  verdict.passes = false;
+  verdict.other_topology = "has 2 parts";
+  EXPECT_EQ(realism_words(verdict, {}), std::vector<std::string>{"has 2 parts"});
+}
+
 TEST(Realism, AnotherDrawOfTheSameNoisePasses) {
   const RealismVerdict verdict = judge_realism(waves(0.01, 1), waves(0.01, 2), {});
   EXPECT_TRUE(verdict.passes) << verdict.p << " " << verdict.largest_distance;

@@ -49,6 +49,18 @@ TEST(ReliefNoise, KeepsAConstantHeight) {
   EXPECT_NEAR(ball.field.value({0, 0, 1.03}), 0.0, 0.03 * 0.03);  // s is the distance to first order
 }
 
+// A point whose projection misses the surface has no height of its own.
+TEST(ReliefNoise, BelongsToTheSurface) {
+  constexpr double kApart = 0.05;
+  const Covered ball(sphere_recipe(1.0), kApart, 0.1, [](const Vec3d&) { return 0.03; });
+  CounterRandom random(5);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d p = random_direction(random);
+    for (const double near : {-0.4, 0.4}) ASSERT_NEAR(ball.at((1.0 + near * kApart) * p), 0.03, 3e-6) << i;
+    for (const double far : {-2.5, 2.5}) ASSERT_EQ(ball.at((1.0 + far * kApart) * p), 0.0) << i;
+  }
+}
+
 // A spline smooths a wave of wave number k by a share of about (k spacing)^2 / 6 along each of two axes.
 TEST(ReliefNoise, FollowsItsHeights) {
   const Covered ball(sphere_recipe(1.0), 0.04, 0.1, waves);

@@ -1,5 +1,6 @@
 #include "estimation/shape/relief/relief_fit.h"
 
+#include "geometry/mesh_topology.h"
 #include "geometry/surface/surface_tree.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
@@ -41,6 +42,31 @@ TEST(ReliefFit, BringsTheBumpsBack) {
   Recipe whole = bumpy.base;
   whole.layers = {relief.layer};
   EXPECT_LT(mean_distance(bumpy.surface, whole), 0.15 * mean_distance(bumpy.surface, bumpy.base));
+}
+
+// Two lobes in contact, with a narrow neck between them.
+Recipe lobes_in_contact() {
+  Recipe recipe;
+  recipe.body = MetaballBody{};
+  recipe.body->blend_exponent = 4.0;
+  recipe.body->spheres = {{{-0.5, 0, 0}, 0.45}, {{0.4, 0, 0}, 0.38}};
+  recipe.body->subtract = {{{-0.1, 0.3, 0}, 0.2}, {{-0.1, -0.1, 0.3}, 0.2}};
+  return recipe;
+}
+
+// Where few samples see a place, heights would be several times what was measured.
+TEST(ReliefFit, HasNoHeightFarBeyondWhatWasMeasured) {
+  Recipe bumpy = lobes_in_contact();
+  const TriangleMesh bare = coarse_mesh_of(ImplicitField(bumpy), 60);
+  bumpy.layers = {fractal_layer(0.02, 4.0, 2)};
+  const ReliefFit relief = fit_relief(coarse_mesh_of(ImplicitField(bumpy), 60), lobes_in_contact());
+  EXPECT_GT(relief.layer.low, -0.06);
+  EXPECT_LT(relief.layer.high, 0.06);
+  bumpy.layers = {relief.layer};
+  const MeshTopology wanted = analyze_topology(bare),
+                     made = analyze_topology(coarse_mesh_of(ImplicitField(bumpy), 120));
+  EXPECT_EQ(made.components, wanted.components);
+  EXPECT_EQ(made.genus, wanted.genus);
 }
 
 // Rounding moves heights by at most half a step.
