@@ -171,7 +171,9 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
     change_reliefs(recipe, options.recipe, "--finer continues",
                    [&](ReliefLayer& relief) { relief.finer = options.finer; });
   }
-  if (job.options.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = job.seed;
+  // A variation has the seed as its number, and members have numbers of their own.
+  const bool is_one_variation = options.vary > 0.0 && options.members.range.empty();
+  if (job.options.option("--seed").count() > 0 && !is_one_variation) recipe.seed = job.seed;
   return recipe;
 }
 
@@ -229,10 +231,7 @@ void check_outputs(const Job& job, const SynthOptions& options) {
 }
 
 // Refuses members that would not differ as the options say.
-void check_members_of(const Job& job, const SynthOptions& options, const Recipe& recipe) {
-  const bool varied = options.vary > 0.0;
-  if (recipe.family && varied)
-    throw InputError("--vary: members of a family differ as the recipe says; leave out --vary or --members");
+void check_members_of(const Job& job, const Recipe& recipe) {
   if (!recipe.family && job.options.option("--seed").count() > 0)
     throw InputError(
         "--seed: bodies of --members have their numbers as seeds, but for those of a family; leave "
@@ -253,20 +252,24 @@ void synthesize(Job& job, const SynthOptions& options) {
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
   const BodyRequest& body = options.body;
   const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
-  const auto variation = [&](std::uint64_t seed) {
-    return finished(job, options.finish, varied(job, options, recipe, seed), file.string(), patch_side);
+  const auto variation = [&](const Recipe& of, std::uint64_t seed) {
+    return finished(job, options.finish, varied(job, options, of, seed), file.string(), patch_side);
   };
   const bool is_varied = options.vary > 0.0;
   const Recipe whole = is_varied ? recipe : finished(job, options.finish, recipe, file.string(), patch_side);
   if (!options.members.range.empty()) {
-    check_members_of(job, options, recipe);
+    check_members_of(job, recipe);
     const auto draw = [&](std::uint64_t number) {
-      return is_varied ? FamilyMember{variation(number), {}, {}, {}} : family_member(whole, number);
+      if (!is_varied) return family_member(whole, number);
+      if (!recipe.family) return FamilyMember{variation(recipe, number), {}, {}, {}};
+      FamilyMember member = family_member(recipe, number);
+      member.recipe = variation(member.recipe, number);
+      return member;
     };
     const auto work = body.mesh.size.only_predict ? predict_members : make_members;
     return work(job, options.members, body, {whole, file, draw});
   }
-  const Recipe made = is_varied ? variation(job.seed) : whole;
+  const Recipe made = is_varied ? variation(recipe, job.seed) : whole;
   if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
   if (body.output.empty() && !body.mesh.size.only_predict) return;
   make_mesh(job, body.mesh, made, file, body.output);

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
@@ -20,6 +22,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/family_member.h"
 #include "tasks/job/words.h"
+#include "tasks/synth/member_differences.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/manifest.h"
 #include "tasks/synthesis/mesh_region.h"
@@ -259,6 +262,35 @@ Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range) {
   return tally;
 }
 
+// The first member, the last and some between.
+std::vector<std::uint64_t> sampled_members(const MemberRange& range, std::uint64_t fewest) {
+  constexpr std::uint64_t kMembersForOne = 20, kMost = 8;
+  const std::uint64_t all = range.end - range.begin;
+  const std::uint64_t count = std::min(all, std::clamp(all / kMembersForOne, fewest, kMost));
+  std::vector<std::uint64_t> numbers{range.begin};
+  for (std::uint64_t i = 1; i < count; ++i) numbers.push_back(range.begin + (all - 1) * i / (count - 1));
+  return numbers;
+}
+
+// Says how much some members differ whose meshes are there and closed. Meshes of very many facets would take
+// longer to compare than to make.
+void say_differences(Job& job, const BodyRequest& body, const MemberRange& range) {
+  constexpr std::uint64_t kFewest = 4;
+  constexpr std::size_t kMostTriangles = 1'000'000;
+  if (body.output.empty() || body.mesh.points || !body.mesh.tile.empty() || !body.mesh.patch.empty()) return;
+  std::vector<TriangleMesh> meshes;
+  for (const std::uint64_t number : sampled_members(range, kFewest)) {
+    const fs::path file = numbered(body, number).output;
+    if (!fs::is_regular_file(file) || !has_readable_extension(file)) continue;
+    meshes.push_back(read_mesh(file));
+    if (meshes.back().triangles.size() > kMostTriangles) return;
+  }
+  const Json figures = member_differences(meshes);
+  if (figures.is_null()) return;
+  job.summary["members"]["differences"] = figures;
+  job.say(words_of_differences(figures));
+}
+
 // Makes the folder of the summary, and throws InputError where the summary cannot be written.
 void prepare_summary(const Job& job) {
   const OptionRow* const row = job.options.find("--summary");
@@ -277,8 +309,9 @@ void declare_members_options(Job& job, MembersRequest& request) {
               "--members", request.range,
               "make bodies A to B - 1 of the recipe instead, each with files of its own: {member} in "
               "their names stands for its number. They are members of the recipe's family, or else have "
-              "their numbers as seeds; with --vary they are the variations of these numbers. Member "
-              "4711 is the same body on every machine")
+              "their numbers as seeds; with --vary they are the variations of these numbers, of the family's "
+              "members where there is one. Says how much they differ. Member 4711 is the same body on every "
+              "machine")
           .placeholder("A:B")
           .makes_folders();
   job.options.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
@@ -344,21 +377,8 @@ void make_members(Job& job, const MembersRequest& request, const BodyRequest& bo
   job.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
                       tally.failed, range.end - range.begin,
                       job.stopped() ? "; stopped, the same command goes on" : ""));
+  if (!job.stopped() && tally.failed == 0) say_differences(job, body, range);
 }
-
-namespace {
-
-// The first member, the last and some between.
-std::vector<std::uint64_t> sampled_members(const MemberRange& range) {
-  constexpr std::uint64_t kMembersForOne = 20, kFewest = 2, kMost = 8;
-  const std::uint64_t all = range.end - range.begin;
-  const std::uint64_t count = std::min(all, std::clamp(all / kMembersForOne, kFewest, kMost));
-  std::vector<std::uint64_t> numbers{range.begin};
-  for (std::uint64_t i = 1; i < count; ++i) numbers.push_back(range.begin + (all - 1) * i / (count - 1));
-  return numbers;
-}
-
-}  // namespace
 
 void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
                      const MemberSource& source) {
@@ -367,7 +387,7 @@ void predict_members(Job& job, const MembersRequest& request, const BodyRequest&
   if (!output.empty()) check_mesh_name(body.mesh, output);
   prepare_summary(job);
   const MemberRange range = parse_range(request.range);
-  const std::vector<std::uint64_t> numbers = sampled_members(range);
+  const std::vector<std::uint64_t> numbers = sampled_members(range, 2);
   const std::uint64_t members = range.end - range.begin;
   const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
   const double start = job.seconds();
