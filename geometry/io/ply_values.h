@@ -21,6 +21,10 @@ struct VertexValues {
 // that it has.
 VertexValues read_ply_values(const std::filesystem::path& file, const std::string& name);
 
+// The properties of the vertices of a PLY that are single numbers, in the file's order. Throws InputError for
+// a file that is no PLY.
+std::vector<std::string> ply_value_names(const std::filesystem::path& file);
+
 // Writes a binary little-endian PLY: float32 x y z (and normals and uchar red green blue where the mesh has
 // them), then each quantity as a float32 property of the vertex, which MeshLab, ParaView and CloudCompare
 // show. The mesh must be as write_mesh() wants it. Throws InputError when the file cannot be written,

@@ -202,32 +202,52 @@ TriangleMesh read_after(const PlyHeader& header, const MeshFile& file, TextScann
   return mesh;
 }
 
-// The properties of the vertices that are single numbers, for messages.
-std::string names_of_values(const PlyHeader& header) {
-  std::string names;
+// The properties of the vertices that are single numbers; and for messages.
+std::vector<std::string> value_names_of(const PlyHeader& header) {
+  std::vector<std::string> names;
   for (const PlyElement& element : header.elements) {
     if (element.name != "vertex") continue;
     for (const PlyProperty& p : element.properties) {
-      if (!p.is_list && names.size() < 200) names += (names.empty() ? "" : ", ") + p.name.substr(0, 40);
+      if (!p.is_list) names.push_back(p.name);
     }
   }
   return names;
 }
 
+std::string words_of_values(const PlyHeader& header) {
+  std::string words;
+  for (const std::string& name : value_names_of(header)) {
+    if (words.size() < 200) words += (words.empty() ? "" : ", ") + name.substr(0, 40);
+  }
+  return words;
+}
+
+// A PLY, or else an error.
+MeshFile loaded_ply(const std::filesystem::path& file) {
+  MeshFile content = load_mesh_file(file);
+  if (mesh_extension(file) != ".ply") content.fail("", "has no properties of vertices", "give a .ply");
+  return content;
+}
+
 }  // namespace
 
 VertexValues read_ply_values(const std::filesystem::path& file, const std::string& name) {
-  const MeshFile content = load_mesh_file(file);
-  if (mesh_extension(file) != ".ply") content.fail("", "has no properties of vertices", "give a .ply");
+  const MeshFile content = loaded_ply(file);
   TextScanner scan(content);
   const PlyHeader header = read_ply_header(scan);
   VertexValues wanted{name, {}};
   const TriangleMesh mesh = read_after(header, content, scan, wanted);
   if (wanted.values.empty() || wanted.values.size() != mesh.vertices.size()) {
     content.fail("", "the vertices have no property " + astrolith::quoted(name),
-                 "choose from " + names_of_values(header));
+                 "choose from " + words_of_values(header));
   }
   return wanted;
+}
+
+std::vector<std::string> ply_value_names(const std::filesystem::path& file) {
+  const MeshFile content = loaded_ply(file);
+  TextScanner scan(content);
+  return value_names_of(read_ply_header(scan));
 }
 
 TriangleMesh read_ply(const MeshFile& file) {

@@ -228,7 +228,8 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
     Returns
     -------
     Mesh
-        float64 vertices in the file's unit, which `length_unit` names where the file states it.
+        float64 vertices in the file's unit, which `length_unit` names where the file states it; with the labels and the
+        elevations of ``synth --labels``.
 
     Raises
     ------
@@ -238,7 +239,14 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
         There is no such file. It is a ValueError, too.
     """
     read = _synthesis.read_mesh(_arrays.file_name(file, "file"), _arrays.flag(points, "points"))
-    return Mesh(read["vertices"], read["faces"], read.get("normals"), length_unit=stated_unit(file))
+    return Mesh(
+        read["vertices"],
+        read["faces"],
+        read.get("normals"),
+        read.get("labels"),
+        read.get("elevations"),
+        length_unit=stated_unit(file),
+    )
 
 
 def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:

@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -15,8 +16,10 @@
 #include <tuple>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
+#include "geometry/io/ply_values.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/wound_surface.h"
@@ -288,6 +291,26 @@ Fields predict(const std::string& json, const std::filesystem::path& name, int r
   return figures;
 }
 
+// The labels and the elevations that `synth --labels` gave the vertices of a PLY.
+struct FileLabels {
+  std::vector<std::int32_t> labels;
+  std::vector<float> elevations;
+};
+FileLabels labels_in(const std::filesystem::path& file) {
+  FileLabels found;
+  if (mesh_extension(file) != ".ply") return found;
+  const std::vector<std::string> names = ply_value_names(file);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (!has("label") || !has("elevation")) return found;
+  for (const double label : read_ply_values(file, "label").values)
+    found.labels.push_back(static_cast<std::int32_t>(label));
+  for (const double elevation : read_ply_values(file, "elevation").values)
+    found.elevations.push_back(static_cast<float>(elevation));
+  return found;
+}
+
 Fields read(const std::filesystem::path& file, bool points_allowed) {
   TriangleMesh mesh = run_job(
       nb::none(), 0, [=](JobState&) { return points_allowed ? read_mesh_or_points(file) : read_mesh(file); });
@@ -297,6 +320,11 @@ Fields read(const std::filesystem::path& file, bool points_allowed) {
   result["vertices"] = array_of<double>(std::move(mesh.vertices), {n, 3});
   result["faces"] = array_of<std::uint32_t>(std::move(mesh.triangles), {m, 3});
   if (with_normals) result["normals"] = array_of<double>(std::move(mesh.normals), {n, 3});
+  FileLabels found = run_job(nb::none(), 0, [=](JobState&) { return labels_in(file); });
+  if (!found.labels.empty()) {
+    result["labels"] = array_of<std::int32_t>(std::move(found.labels), {n});
+    result["elevations"] = array_of<float>(std::move(found.elevations), {n});
+  }
   return result;
 }
 

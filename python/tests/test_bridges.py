@@ -98,6 +98,19 @@ def test_a_finished_set_is_read_member_by_member(program, tmp_path):
             bridges.FinishedSet(tmp_path / wrong)
 
 
+def test_a_finished_set_has_labels_and_variations(program, tmp_path):
+    (tmp_path / "rough.json").write_text(json.dumps(ROUGH))
+    program("synth", "rough.json", "--members", "0:2", "--vary", 0.3, "--labels", "--resolution", "16",
+            "-o", "set/{member}.ply", "--manifest", "set/m.jsonl")  # fmt: skip
+    made = bridges.FinishedSet(tmp_path / "set/m.jsonl", check=True)
+    for item in made:
+        count = len(item["vertices"])
+        assert item["labels"].shape == (count,) and item["labels"].dtype == np.int32 and item["labels"].max() == 1
+        assert item["elevations"].shape == (count,) and item["elevations"].dtype == np.float32
+        assert 0 < item["variation"]["mean_distance"] <= item["variation"]["max_distance"]
+    assert not np.array_equal(made[0]["vertices"], made[1]["vertices"])
+
+
 def test_points_of_bodies_lie_on_them_and_are_uniform():
     bodies = bridges.Bodies([BALL], seeds=[1, 2], resolution=32, points=4000)
     points, normals = bodies[0]["points"] - np.array([1, 0, 0], np.float32), bodies[0]["point_normals"]

@@ -20,8 +20,9 @@ class FinishedSet:
 
     Item k is a dictionary: ``member``, ``seed``, ``drawn`` (the numbers of the family by their paths), ``files`` (the
     paths of the member's files by their endings); where there is a mesh, ``vertices`` (n, 3) float32, ``faces``
-    (m, 3) int64 and, where the file has them, ``normals`` (n, 3) float32; where there are maps of pictures, ``maps``
-    (their arrays by name). Files are read when an item is asked for. ``torch_dataset`` takes such a set.
+    (m, 3) int64 and, where the file has them, ``normals`` (n, 3) float32, ``labels`` (n) int32 and ``elevations`` (n)
+    float32 (``synth --labels``); where there are maps of pictures, ``maps`` (their arrays by name); ``variation`` with
+    ``--vary``: its similarity, strength and distances. Files are read when an item is asked for. ``torch_dataset`` takes such a set.
 
     Parameters
     ----------
@@ -69,6 +70,8 @@ class FinishedSet:
     def __getitem__(self, index: int) -> dict[str, Any]:
         stated = self._members[index]
         item: dict[str, Any] = {key: stated[key] for key in ("member", "seed", "drawn")}
+        if "variation" in stated:
+            item["variation"] = stated["variation"]
         item["files"] = {_ending(entry["name"]): str(self._path(entry)) for entry in stated["files"]}
         for ending, path in item["files"].items():
             if ending in _MESHES and "vertices" not in item:
@@ -76,6 +79,8 @@ class FinishedSet:
                 item.update(vertices=mesh.vertices.astype(np.float32), faces=mesh.faces.astype(np.int64))
                 if mesh.normals is not None:
                     item["normals"] = mesh.normals.astype(np.float32)
+                if mesh.labels is not None and mesh.elevations is not None:
+                    item.update(labels=mesh.labels, elevations=mesh.elevations)
             elif ending == ".npz":
                 with np.load(path, allow_pickle=False) as maps:
                     item["maps"] = dict(maps)
@@ -96,6 +101,8 @@ def _member(line: str) -> Optional[dict[str, Any]]:
         stated = json.loads(line)
         member = {key: stated[key] for key in ("seed", "drawn", "files")}
         member["member"] = int(stated["member"])
+        if "variation" in stated:
+            member["variation"] = stated["variation"]
         for entry in member["files"]:
             if not all(isinstance(entry[key], str) for key in ("name", "sha256")):
                 return None
