@@ -151,6 +151,7 @@ void visit_fields(FieldVisitor& v, LocalGravity& gravity) {
 void visit_fields(FieldVisitor& v, BoulderLayer& layer) {
   v.field("smoothing", layer.smoothing, kShare);
   v.field("roughness", layer.roughness, range(0.0, 0.5));
+  v.field("angularity", layer.angularity, range(0.0, 1.0));
   v.field("boulders", layer.boulders);
   v.field("population", layer.population);
   v.field("gravity", layer.gravity);

@@ -152,6 +152,7 @@ Layer layer_of(const KnownLandforms& known, const Population& population, int se
     layer.name = "finish boulders";
     layer.seed = seed;
     layer.smoothing = layer.roughness = 0.1;
+    layer.angularity = 0.8;
     layer.population.emplace().drawn = population;
     return layer;
   }
@@ -222,6 +223,11 @@ double finest_size(const Recipe& recipe) {
           if constexpr (!Kind::kTraits.is_noise) landform = std::min(landform, l.least_listed());
         },
         layer);
+  }
+  // What a relief shows is measured; landforms below the distance of its heights are not.
+  for (const Layer& layer : recipe.layers) {
+    if (const ReliefLayer* relief = std::get_if<ReliefLayer>(&layer))
+      landform = std::min(landform, relief->donor_scale * relief->spacing);
   }
   if (landform < kAnySize) return landform;
   for (const Sphere& sphere : recipe.body->spheres) metaball = std::min(metaball, 2.0 * sphere.radius);

@@ -25,16 +25,33 @@ void expect_boulder_fits(double axis, const BareSurface& surface, const std::str
                    std::to_string(surface.longest_side()) + "; lower it");
 }
 
+// The outermost point with F = 0 on the normal through a point of the bare surface, as far as steps of a part
+// of the heights' bound tell. The point of the bare surface where there is none.
+Vec3d outermost_ground(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain) {
+  constexpr int kSteps = 64, kHalvings = 24;
+  const double step = 2.0 * terrain.height_bound / kSteps;
+  const auto inside = [&](double height) { return terrain.field(bare + height * normal) > 0.0; };
+  double height = terrain.height_bound;
+  while (height > -terrain.height_bound && !inside(height)) height -= step;
+  if (!(height > -terrain.height_bound)) return bare;
+  double in = height, out = height + step;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double middle = 0.5 * (in + out);
+    (inside(middle) ? in : out) = middle;
+  }
+  return bare + in * normal;
+}
+
 // The point with F = 0 on the normal through a point of the bare surface. F falls by about 1 for each length
-// unit along the normal, so that each step goes by F.
+// unit along the normal, so that each step goes by F; where it does not, the steps miss the ground.
 Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain) {
   double height = 0.0;
   for (int step = 0; step < 12; ++step) {
     const double change = terrain.field(bare + height * normal);
     height = std::clamp(height + change, -terrain.height_bound, terrain.height_bound);
-    if (std::fabs(change) < 1e-4 * terrain.height_bound) break;
+    if (std::fabs(change) < 1e-4 * terrain.height_bound) return bare + height * normal;
   }
-  return bare + height * normal;
+  return outermost_ground(bare, normal, terrain);
 }
 
 // Sets the boulder's axes from its heading and tilt about the upright direction.
@@ -90,21 +107,41 @@ void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t s
   }
 }
 
+// The facets of a boulder: their frame, turned at random, and their depths in seven steps.
+void add_facets(double angularity, BoulderKernel& kernel) {
+  constexpr double kDeepest = 2.0 / 3.0;  // 1 / (1 + this): the least distance from the centre, in half axes
+  if (!(angularity > 0.0)) return;
+  CounterRandom random(hash_append(kernel.seed, 0xface7u));
+  const Vec3d first = normalized(Vec3d{random.normal(), random.normal(), random.normal()}),
+              second = normalized(cross(first, Vec3d{random.normal(), random.normal(), random.normal()}));
+  kernel.facet_axes[0] = to_float(first);
+  kernel.facet_axes[1] = to_float(second);
+  kernel.facet_axes[2] = to_float(cross(first, second));
+  kernel.facet_step = static_cast<float>(kDeepest * angularity / 7.0);
+  for (std::uint32_t& depths : kernel.facet_depths) depths = static_cast<std::uint32_t>(random.next());
+}
+
 BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder) {
   const Vec3d half = 0.5 * boulder.axes;
   const double least = std::min({half.x, half.y, half.z});
   // |distance| is at least |1 - |u|| times the least half axis. Beyond this |u| neither the noise nor the
   // smoothing reaches F = 0.
   const double reach = 1.0 + layer.smoothing + layer.roughness;
-  return {to_float(boulder.center),
-          {to_float(boulder.directions[0] * (1.0 / half.x)), to_float(boulder.directions[1] * (1.0 / half.y)),
-           to_float(boulder.directions[2] * (1.0 / half.z))},
-          to_float({1.0 / half.x, 1.0 / half.y, 1.0 / half.z}),
-          static_cast<float>(1e-6 / least),
-          static_cast<float>(layer.smoothing * least),
-          static_cast<float>(layer.roughness * least),
-          boulder.noise_seed,
-          static_cast<float>(reach * reach)};
+  BoulderKernel kernel{
+      to_float(boulder.center),
+      {to_float(boulder.directions[0] * (1.0 / half.x)), to_float(boulder.directions[1] * (1.0 / half.y)),
+       to_float(boulder.directions[2] * (1.0 / half.z))},
+      to_float({1.0 / half.x, 1.0 / half.y, 1.0 / half.z}),
+      static_cast<float>(1e-6 / least),
+      static_cast<float>(layer.smoothing * least),
+      static_cast<float>(layer.roughness * least),
+      boulder.noise_seed,
+      static_cast<float>(reach * reach),
+      0.0f,
+      {},
+      {}};
+  add_facets(layer.angularity, kernel);
+  return kernel;
 }
 
 // The extent of a boulder about the origin along a direction, with its roughness, by bisection.

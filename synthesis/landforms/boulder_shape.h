@@ -11,7 +11,7 @@
 
 namespace astrolith {
 
-// A boulder with the constants that its evaluation needs: an ellipsoid with noise.
+// A boulder with the constants that its evaluation needs: an ellipsoid with facets and noise.
 struct BoulderKernel {
   Vec3f center;         // length units
   Vec3f across[3];      // unit vectors along the axes, each divided by half the axis' length, per length unit
@@ -21,6 +21,9 @@ struct BoulderKernel {
   float roughness;      // amplitude of the noise, length units
   std::uint32_t seed;   // seed of the noise
   float reach_squared;  // |u|^2 beyond which the boulder changes nothing, in half axes
+  float facet_step;  // what a step of a facet's depth adds to 1 / its distance from the centre; 0: no facets
+  Vec3f facet_axes[3];            // orthonormal: the frame of the facets in half axes
+  std::uint32_t facet_depths[2];  // 3 bits for each of ten directions, and for their opposites
 };
 
 // The coordinates u of a point along the boulder's axes, in half axes: |u| = 1 on the ellipsoid.
@@ -34,6 +37,27 @@ ASTROLITH_KERNEL float squared_length(float x, float y, float z) {
   return math::fma(x, x, math::fma(y, y, z * z));
 }
 
+// max(|u|, n u / d) over twenty facets with normals n at distances d <= 1 from the centre, in half axes. It
+// is 1 on the surface of the ellipsoid that the facets cut. The normals are those of a dodecahedron and an
+// octahedron, turned at random; facets whose depth is 0 only touch the ellipsoid.
+ASTROLITH_KERNEL float faceted_length(const BoulderKernel& b, const Vec3f& u, float length) {
+  constexpr float kShort = 0.525731112f, kLong = 0.850650808f, kDiagonal = 0.577350269f;
+  const auto along = [&](const Vec3f& a) { return math::fma(a.x, u.x, math::fma(a.y, u.y, a.z * u.z)); };
+  const float x = along(b.facet_axes[0]), y = along(b.facet_axes[1]), z = along(b.facet_axes[2]);
+  float most = length;
+  const auto cut = [&](float at, int direction) {
+    const std::uint32_t depths = at > 0.0f ? b.facet_depths[0] : b.facet_depths[1];
+    const auto depth = static_cast<float>(static_cast<std::int32_t>(depths >> (3 * direction) & 7u));
+    most = math::max(most, math::abs(at) * math::fma(b.facet_step, depth, 1.0f));
+  };
+  cut(math::fma(kShort, y, kLong * z), 0), cut(math::fma(kShort, y, -kLong * z), 1);
+  cut(math::fma(kShort, z, kLong * x), 2), cut(math::fma(kShort, z, -kLong * x), 3);
+  cut(math::fma(kShort, x, kLong * y), 4), cut(math::fma(kShort, x, -kLong * y), 5);
+  cut(kDiagonal * (x + y + z), 6), cut(kDiagonal * (x + y - z), 7);
+  cut(kDiagonal * (x - y + z), 8), cut(kDiagonal * (y + z - x), 9);
+  return most;
+}
+
 // Two octaves of simplex noise, in [-1, 1]. The features are about as wide as a half axis.
 ASTROLITH_KERNEL float boulder_noise(const Vec3f& u, std::uint32_t seed) {
   const float wide = simplex_noise(1.2f * u.x, 1.2f * u.y, 1.2f * u.z, seed);
@@ -42,13 +66,14 @@ ASTROLITH_KERNEL float boulder_noise(const Vec3f& u, std::uint32_t seed) {
 }
 
 // The distance to the boulder's surface to first order, positive inside, length units:
-// (1 - |u|) / |grad |u|| + roughness * noise(u).
+// (1 - g) / |grad |u|| + roughness * noise(u), where g is |u|, or with facets their faceted_length().
 ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) {
   const float length = math::sqrt(squared_length(u.x, u.y, u.z)) + 1e-6f;
   const float slope =
       math::sqrt(squared_length(u.x * b.inverse_half.x, u.y * b.inverse_half.y, u.z * b.inverse_half.z)) +
       b.floor;
-  const float smooth = (1.0f - length) * (length / slope);
+  const float cut = b.facet_step > 0.0f ? faceted_length(b, u, length) : length;
+  const float smooth = (1.0f - cut) * (length / slope);
   return b.roughness > 0.0f ? math::fma(b.roughness, boulder_noise(u, b.seed), smooth) : smooth;
 }
 

@@ -64,8 +64,8 @@ void declare_finish_options(Job& job, FinishOptions& options) {
   job.options
       .add_option(
           "--from", options.from,
-          "with --finish: the greatest size; the smallest crater or boulder of the recipe, or else the "
-          "smallest metaball, if absent")
+          "with --finish: the greatest size; if absent, the smallest crater or boulder of the recipe, the "
+          "distance of a relief's heights, or else the smallest metaball")
       .check(in_range(1e-6, 1e6))
       .needs(finish)
       .default_text("")

@@ -78,6 +78,7 @@ inline CraterLayer random_craters(CounterRandom& random) {
 inline BoulderLayer random_boulders(CounterRandom& random) {
   BoulderLayer layer;
   layer.roughness = random.below(2) == 0 ? 0.1 : 0.0;
+  layer.angularity = layer.roughness > 0.0 ? 0.7 : 0.0;
   layer.smoothing = 0.2;
   layer.population = BoulderPopulation{};
   layer.population->drawn = drawn(0.1);

@@ -91,6 +91,18 @@ TEST(KnownPopulation, BeginsAtTheFinestSizeOfTheRecipe) {
   EXPECT_DOUBLE_EQ(finish.layers.front().greatest, 6.0);
 }
 
+// What was measured is not finished again.
+TEST(KnownPopulation, BeginsBelowTheHeightsOfARelief) {
+  Recipe recipe = testing::sphere_recipe(0.25);
+  recipe.length_unit = "km";
+  ReliefLayer relief;
+  relief.spacing = 0.004;
+  recipe.layers = {relief};
+  EXPECT_DOUBLE_EQ(finest_size(recipe), 0.004);
+  const Finish finish = finish_recipe(recipe, "body.json", {"itokawa", {}, 0.001});
+  EXPECT_LE(finish.layers.back().greatest, 0.004);
+}
+
 TEST(KnownPopulation, RefusesInOneLine) {
   using testing::has;
   EXPECT_TRUE(has(refusal(ball(1.0, "m"), {"vesta", {}, 0.1}), "no known body; name one of itokawa, bennu"));

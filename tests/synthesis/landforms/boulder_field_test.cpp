@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "numerics/errors.h"
+#include "synthesis/field/bare_body.h"
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"
 
@@ -50,6 +51,7 @@ TEST(BoulderField, BurialSaysHowMuchIsSeen) {
 TEST(BoulderField, EveryBoulderTouchesTheGround) {
   BoulderLayer layer;
   layer.roughness = 0.5;
+  layer.angularity = 1.0;
   BoulderPopulation& population = layer.population.emplace();
   population.drawn.count = 60;
   population.drawn.least_diameter = 0.5;
@@ -64,6 +66,54 @@ TEST(BoulderField, EveryBoulderTouchesTheGround) {
       ASSERT_TRUE(field.inside(boulder.center - t * normalized(boulder.center))) << t << " of " << height;
     }
   }
+}
+
+// Ground that falls three times as fast as the distance, which steps by F overshoot ever more.
+TEST(BoulderField, LiesOnSteepGround) {
+  const BareSurface surface(bare_body(testing::sphere_recipe(10.0)));
+  const Terrain steep{[](const Vec3d& p) { return 3.0 * (10.3 - norm(p)); }, 1.0};
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({1, 1, 0.5}, {0.4, 0.4, 0.4}, 0.5)};
+  const std::vector<PlacedBoulder> placed = place_boulders(layer, surface, steep, 1, 0, "layers[0]");
+  EXPECT_NEAR(norm(placed.at(0).center), 10.3, 1e-3);
+}
+
+// Facets cut into the ellipsoid, each boulder's in its own way, and leave flat ground: along most chords of
+// the surface between near directions the middle lies on it too.
+TEST(BoulderField, FacetsAreFlatAndCutIntoTheEllipsoid) {
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({0, 0, 1}, {2, 2, 2}, 0.0), boulder_towards({0, 1, 0}, {2, 2, 2}, 0.0)};
+  layer.angularity = 1.0;
+  const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
+  CounterRandom random(3);
+  const auto radius = [&](const Vec3d& center, const Vec3d& direction) {
+    double in = 0.0, out = 1.2;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (in + out);
+      (field.inside(center + middle * direction) ? in : out) = middle;
+    }
+    return in;
+  };
+  double sum[2] = {0.0, 0.0}, differences = 0.0;
+  int flat = 0;
+  constexpr int kDirections = 400;
+  for (int i = 0; i < kDirections; ++i) {
+    const Vec3d up{0, 0, 1},
+        d = normalized(Vec3d{random.normal(), random.normal(), random.uniform(0.2, 1.0)});
+    const Vec3d first = field.boulders()[0].boulders[0].center,
+                second = field.boulders()[0].boulders[1].center;
+    const double r = radius(first, d), of_second = radius(second, {d.x, d.z, d.y});
+    ASSERT_LE(r, 1.0 + 1e-4);
+    ASSERT_GE(r, 0.59);
+    sum[0] += r, sum[1] += of_second;
+    differences += std::fabs(r - of_second);
+    const Vec3d beside = normalized(d + 0.1 * cross(d, up));
+    const Vec3d middle = 0.5 * (r * d + radius(first, beside) * beside);
+    flat += std::fabs(radius(first, normalized(middle)) - norm(middle)) < 2e-4;
+  }
+  EXPECT_LT(sum[0] / kDirections, 0.92);
+  EXPECT_GT(differences / kDirections, 0.02);
+  EXPECT_GT(flat, kDirections / 2);
 }
 
 // At a place on +x, east is +y. Axis a lies along east, and with a heading of 90 along north.
