@@ -68,8 +68,8 @@ struct Finish {
 };
 
 // The finest size that a recipe describes: the diameter of the smallest crater or boulder that it lists or
-// draws, or the distance of a relief's heights where that is smaller; where it has none of these, the diameter
-// of the smallest additive metaball. In length units.
+// draws, or the distance of a relief's heights where that is smaller; where it has none of these, the
+// diameter of the smallest additive metaball. In length units.
 double finest_size(const Recipe& recipe);
 
 // The recipe with the landforms of a known body after its layers, craters first. Throws InputError, naming
