@@ -96,7 +96,8 @@ ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, 
 ProbeFigures MeshEstimator::probe_or_known(const ProbedSurface& surface, int resolution, int count) {
   constexpr double kNear = 0.05;
   const double ratio = last_.step / grid_of(field_, region_, resolution).step;
-  if (region_.tile.count > 1 || last_.count < count || std::fabs(ratio - 1.0) > kNear) return probe(surface, resolution, count);
+  if (region_.tile.count > 1 || last_.count < count || std::fabs(ratio - 1.0) > kNear)
+    return probe(surface, resolution, count);
   ProbeFigures figures = last_.figures;
   for (double* of_area : {&figures.triangles, &figures.blocks, &figures.seconds}) *of_area *= ratio * ratio;
   return figures;

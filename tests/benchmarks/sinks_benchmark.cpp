@@ -1,5 +1,5 @@
-// What a mesh costs: the mesher alone, on a GPU too where there is one, and what follows it, its check and its
-// file. For these a mesh is recorded once, and replayed.
+// What a mesh costs: the mesher alone, on a GPU too where there is one, and what follows it, its check and
+// its file. For these a mesh is recorded once, and replayed.
 //   sinks_benchmark RECIPE RESOLUTION [FILE.ply]
 // Prints million triangles a second and processor seconds of the check alone, the file alone, and both.
 #include <chrono>
