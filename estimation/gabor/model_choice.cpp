@@ -140,7 +140,9 @@ TextureModel simplest_of_the_best(const Scores& scores) {
     for (std::size_t k = 0; k < model.size(); ++k) worse.push_back(model[k] - best[k]);
     return mean_of(worse) <= standard_error(worse);
   };
-  return static_cast<TextureModel>(std::find_if(logs.begin(), logs.end(), is_near) - logs.begin());
+  const auto simplest = std::find_if(logs.begin(), logs.end(), is_near);
+  const auto* const taken = simplest == logs.end() ? &best : &*simplest;
+  return static_cast<TextureModel>(taken - logs.data());
 }
 
 }  // namespace

@@ -222,16 +222,18 @@ void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::strin
 }  // namespace
 
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  write_glb_levels({&mesh, 1}, {}, file, info);
+  const TriangleMesh* const only = &mesh;
+  write_glb_levels({&only, 1}, {}, file, info);
 }
 
-void write_glb_levels(std::span<const TriangleMesh> levels, std::span<const double> coverage,
+void write_glb_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
                       const std::filesystem::path& file, const MeshFileInfo& info) {
   std::vector<StoredMesh> stored;
-  for (const TriangleMesh& mesh : levels) {
-    stored.push_back({mesh, std::nullopt});
+  for (const TriangleMesh* mesh : levels) {
+    stored.push_back({*mesh, std::nullopt});
     if (info.texture_coordinates) {
-      stored.back().map = longitude_latitude(mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
+      stored.back().map =
+          longitude_latitude(*mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
     }
   }
   const GlbDocument document(stored, coverage, info);

@@ -114,9 +114,9 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, con
   format.writer(moved, file, info);
 }
 
-void write_mesh_levels(std::span<const TriangleMesh> levels, std::span<const double> coverage,
+void write_mesh_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
                        const std::filesystem::path& file, const MeshFileInfo& info) {
-  for (const TriangleMesh& mesh : levels) require_writable(mesh, file);
+  for (const TriangleMesh* mesh : levels) require_writable(*mesh, file);
   write_glb_levels(levels, coverage, file, info);
 }
 

@@ -67,7 +67,7 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, con
 // Writes the levels of detail of one body into a .glb, the finest first: an engine shows level k + 1 where
 // the body takes less than coverage[k] of the screen's height (MSFT_lod). `coverage` has a number in 0 .. 1
 // for each level, falling; the last is the one below which nothing is shown. Throws as write_mesh does.
-void write_mesh_levels(std::span<const TriangleMesh> levels, std::span<const double> coverage,
+void write_mesh_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
                        const std::filesystem::path& file, const MeshFileInfo& info);
 
 // What a file says of the unit of its lengths.

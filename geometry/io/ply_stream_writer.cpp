@@ -94,10 +94,14 @@ void PlyStreamWriter::require_known_vertices(std::span<const Triangle> triangles
 
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
   require_known_vertices(triangles);
-  packed_.resize(triangles.size() * kPlyTriangleBytes);
-  char* out = packed_.data();
-  for (const Triangle& triangle : triangles) out = put_ply_triangle(triangle, out);
-  if (std::fwrite(packed_.data(), 1, packed_.size(), spill_.get()) != packed_.size()) fail_spill();
+  constexpr std::size_t kAtOnce = 65536;
+  for (std::size_t first = 0; first < triangles.size(); first += kAtOnce) {
+    const auto piece = triangles.subspan(first, std::min(kAtOnce, triangles.size() - first));
+    packed_.resize(piece.size() * kPlyTriangleBytes);
+    char* out = packed_.data();
+    for (const Triangle& triangle : piece) out = put_ply_triangle(triangle, out);
+    if (std::fwrite(packed_.data(), 1, packed_.size(), spill_.get()) != packed_.size()) fail_spill();
+  }
   num_triangles_ += triangles.size();
 }
 

@@ -188,6 +188,7 @@ void OutputFile::append_file(int descriptor, std::uint64_t bytes) {
   while (bytes > 0) {
     const ssize_t read =
         ::pread(descriptor, block.data(), std::min<std::uint64_t>(bytes, block.size()), from);
+    if (read == 0) errno = EIO;  // the other file is shorter
     if (read <= 0) fail();
     write(block.data(), static_cast<std::size_t>(read));
     from += read;

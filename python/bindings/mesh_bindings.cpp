@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -304,10 +306,17 @@ FileLabels labels_in(const std::filesystem::path& file) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   if (!has("label") || !has("elevation")) return found;
-  for (const double label : read_ply_values(file, "label").values)
-    found.labels.push_back(static_cast<std::int32_t>(label));
-  for (const double elevation : read_ply_values(file, "elevation").values)
-    found.elevations.push_back(static_cast<float>(elevation));
+  const std::vector<double> labels = read_ply_values(file, "label").values,
+                            elevations = read_ply_values(file, "elevation").values;
+  // Properties of these names that another program wrote may hold anything.
+  const auto is_label = [](double v) { return std::fabs(v) < 0x1p31 && v == std::floor(v); };
+  const auto is_float = [](double v) { return std::fabs(v) <= double{std::numeric_limits<float>::max()}; };
+  if (!std::all_of(labels.begin(), labels.end(), is_label) ||
+      !std::all_of(elevations.begin(), elevations.end(), is_float)) {
+    return found;
+  }
+  for (const double label : labels) found.labels.push_back(static_cast<std::int32_t>(label));
+  for (const double elevation : elevations) found.elevations.push_back(static_cast<float>(elevation));
   return found;
 }
 

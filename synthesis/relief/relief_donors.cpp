@@ -46,8 +46,11 @@ ReliefDonors::ReliefDonors(const ReliefPatches& patches, const std::vector<Relie
       from_(box_around(anchors)),
       to_(box_around(patches.anchors())),
       reach_(reach * to_.diagonal()),
-      fill_(fill),
-      ranks_(ranks_of(patches.squares_around())) {}
+      ranks_(ranks_of(patches.squares_around())) {
+  for (const ReliefAnchor& anchor : patches.anchors()) {
+    if (fill && anchor.unseen) unseen_.push_back(anchor.at);
+  }
+}
 
 const ReliefAnchor& ReliefDonors::own_anchor(const Vec3d& own) const {
   const auto nearer = [&](const ReliefAnchor& a, const ReliefAnchor& b) {
@@ -63,9 +66,9 @@ double ReliefDonors::beyond_limits(std::uint32_t place, const Vec3d& own,
   const Vec3d& at = patches_.points().at(place);
   const double distance = norm(at - own), apart = patches_.anchor_spacing().distance();
   double cost = distance < apart ? kOwn : 0.0;
-  const auto unseen = [&](const ReliefAnchor& a) { return a.unseen && norm(a.at - at) < 2.0 * apart; };
-  if (fill_ && std::any_of(patches_.anchors().begin(), patches_.anchors().end(), unseen)) cost += kUnseen;
-  if (fill_ && near_own.unseen) return cost;
+  const auto is_near = [&](const Vec3d& unseen) { return squared_norm(unseen - at) < 4.0 * apart * apart; };
+  if (std::any_of(unseen_.begin(), unseen_.end(), is_near)) cost += kUnseen;
+  if (!unseen_.empty() && near_own.unseen) return cost;
   cost += kFar * std::max(distance / reach_ - 1.0, 0.0);
   return cost + std::max(std::fabs(ranks_[place] - ranks_[near_own.place]) / kLikeRanks - 1.0, 0.0);
 }

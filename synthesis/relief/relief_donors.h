@@ -36,8 +36,8 @@ class ReliefDonors {
 
   const ReliefPatches& patches_;
   Box from_, to_;
-  double reach_;  // length units
-  bool fill_;
+  double reach_;               // length units
+  std::vector<Vec3d> unseen_;  // middles of unseen ground, with `fill`
   std::vector<double> ranks_;  // of the roughness at places, 0 to 1
 };
 

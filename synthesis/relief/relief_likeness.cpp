@@ -140,8 +140,8 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
   const ReliefValues blend(points, ReliefShares(places, tiles, spacing));
   const ReliefValues of_donors = foreign ? measured_blend(patches, spacing) : blend;
   ReliefBands bands = surface_bands(patches, of_donors);
-  const BandRms wants = typical_rms(of_measured, values_of(of_donors, bands.bands), apart.edge, options.fill);
   if (foreign) add(bands.rest, bands.bands.back());
+  const BandRms wants = typical_rms(of_measured, values_of(of_donors, bands.bands), apart.edge, options.fill);
   const std::vector<ReliefAnchor> own = foreign ? relief_anchors(points, apart.distance()) : anchors;
   std::vector<LaidHeights> laid(points.size());
   lay_patches(patches, bands.bands, points, own, ReliefDonors(patches, own, options.reach, options.fill),
@@ -152,6 +152,17 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
   for (const std::vector<double>& band : bands.bands) add(band, heights, -1.0);
   return heights;
 }
+
+namespace {
+
+// How much the heights of a place that was seen stand against those laid over it: not at all on ground as
+// smooth as what was not seen, in full where the mean square is twice that.
+float cover_of(double squares, double smoothest) {
+  if (!(squares > smoothest)) return 0.0f;
+  return smoothest > 0.0 ? static_cast<float>(std::min(squares / smoothest - 1.0, 1.0)) : 1.0f;
+}
+
+}  // namespace
 
 std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
                                    const LikenessOptions& options) {
@@ -171,7 +182,7 @@ std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
     const std::vector<double> values = blend.values_of(bands.bands[b]);
     for (std::size_t i = 0; i < values.size(); ++i) {
       before[i].height[b] = static_cast<float>(values[i]);
-      before[i].cover[b] = patches.squares_around()[i] > smoothest ? 1.0f : 0.0f;
+      before[i].cover[b] = cover_of(patches.squares_around()[i], smoothest);
     }
   }
   std::vector<LaidHeights> laid = before;

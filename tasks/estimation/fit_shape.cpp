@@ -121,9 +121,9 @@ void add_details(Job& job, const FitArguments& arguments, const TargetBody& targ
   if (job.stopped()) return;
   if (!recipe.layers.empty()) fit.base_mesh = std::move(fit.check.mesh);
   measure_recipe(target, recipe, arguments.fit, fit);
-  if (!wanted.keeps_relief() || !job.summary["relief"].contains("heights")) return;
+  if (!job.summary.contains("relief") || !job.summary["relief"].contains("heights")) return;
   const std::size_t halved = mend_relief(target, arguments.fit, static_cast<std::size_t>(arguments.bytes),
-                                         job.progress("topology"), recipe, fit);
+                                         limit.guard(job.progress("topology"), "topology"), recipe, fit);
   job.summary["relief"]["halved_heights"] = halved;
   if (halved > 0)
     job.say(fmt::format("relief: {} halved where it made parts or handles that the target lacks",

@@ -82,7 +82,8 @@ double silhouette_difference(const TriangleMesh& a, const TriangleMesh& b) {
   return either == 0 ? 0.0 : static_cast<double>(one) / static_cast<double>(either);
 }
 
-nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& members) {
+nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& members,
+                                          const Progress& progress) {
   if (members.size() < 2) return nullptr;
   std::vector<SurfaceTree> trees;
   for (const TriangleMesh& mesh : members) trees.emplace_back(mesh);
@@ -90,7 +91,7 @@ nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& membe
   for (std::size_t a = 0; a < members.size(); ++a) {
     for (std::size_t b = a + 1; b < members.size(); ++b) {
       const SurfaceDistanceReport apart =
-          surface_distance(members[a], trees[a], members[b], trees[b], kSamples, 1);
+          surface_distance(members[a], trees[a], members[b], trees[b], kSamples, 1, progress);
       distances.push_back(apart.mean / members.front().bounds().diagonal());
       silhouettes.push_back(silhouette_difference(members[a], members[b]));
     }

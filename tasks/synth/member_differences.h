@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -16,10 +17,11 @@ double silhouette_difference(const TriangleMesh& a, const TriangleMesh& b);
 
 // How much these members of a set differ, pair by pair: the mean distance of the surfaces as a fraction of
 // the first one's diagonal, and the difference of the silhouettes; the least, the mean and the most of each.
-// Null for fewer than two members.
-nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& members);
+// Null for fewer than two members. Throws WorkError when progress asks to stop.
+nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& members,
+                                          const Progress& progress = {});
 
-// "two members lie 3.1 % of the diagonal apart (0.8 to 6 %) ...", for figures that are not null.
+// "two members differ by 3.1 % (0.8 to 6) of the diagonal ...", for figures that are not null.
 std::string words_of_differences(const nlohmann::ordered_json& figures);
 
 }  // namespace astrolith

@@ -240,7 +240,8 @@ void check_members_of(const Job& job, const Recipe& recipe) {
 
 void synthesize(Job& job, const SynthOptions& options) {
   check_outputs(job, options);
-  const std::future<void> start = options.body.mesh.device.start();
+  const bool makes_mesh = !options.body.output.empty() && options.texture.size.empty();
+  const std::future<void> start = makes_mesh ? options.body.mesh.device.start() : std::future<void>();
   const Recipe recipe = read_input(job, options);
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);

@@ -101,7 +101,7 @@ void check_hazard_map(const HazardRequest& request, const Region& region, const 
         "recipe's unit");
   }
   const double pixel = region.size / resolution;
-  if (half_footprint(request.footprint, pixel) < 1 || request.footprint > 0.5 * region.size) {
+  if (request.footprint < 3.0 * pixel || request.footprint > 0.5 * region.size) {
     throw InputError(
         "--footprint: is less than 3 pixels or more than half the patch; change --resolution or the patch");
   }
@@ -131,7 +131,7 @@ void write_hazard_map(Job& job, const HazardRequest& request, const HeightMap& m
   }
   for (const Feature& landform : features_of(ground.field, ground.region.cube())) {
     if (landform.boulder != nullptr && is_resolved(landform, map.pixel))
-      mark_boulder(*landform.boulder, map, ground.region.center, metres, request.footprint, bands);
+      mark_boulder(*landform.boulder, map, ground.region.center, metres, map.pixel * (2 * half + 1), bands);
   }
   nlohmann::ordered_json frame = frame_json(map, ground);
   frame["footprint_m"] = metres * map.pixel * (2 * half + 1);

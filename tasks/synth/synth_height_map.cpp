@@ -32,7 +32,9 @@ std::vector<std::filesystem::path> height_map_files(const std::vector<std::strin
 void check_map(const std::filesystem::path& file, const std::string& option, const Region& region,
                const Recipe& recipe, int resolution) {
   if (!region.is_patch) throw InputError(option + ": is of a patch; add --patch X Y Z SIDE");
-  if (!region.plane) throw InputError(option + ": the surface faces no direction; take a smaller patch");
+  if (!region.plane)
+    throw InputError(option +
+                     ": the patch holds no surface that faces one direction; move it, or take a smaller one");
   if (recipe.length_unit == "px")
     throw InputError(option + ": a recipe in px has no size; state m or km in it");
   if (resolution > kMostPixels)

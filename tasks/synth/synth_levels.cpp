@@ -39,7 +39,8 @@ std::vector<double> coverage_of(const std::vector<DetailLevel>& coarser, double 
 fs::path level_file(const fs::path& output, int level) {
   const std::string extension = mesh_extension(output), name = output.string();
   if (level == 0 || extension == ".glb") return output;
-  return name.substr(0, name.size() - extension.size()) + "_lod" + std::to_string(level) + extension;
+  const std::size_t end = name.size() - extension.size() - (output.extension() == ".zst" ? 4 : 0);
+  return name.substr(0, end) + "_lod" + std::to_string(level) + name.substr(end);
 }
 
 std::vector<fs::path> level_files(const fs::path& output, int levels) {
@@ -65,6 +66,9 @@ std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int
   for (int k = 1; k < levels; ++k) {
     BodyMeshJob level = finest;
     level.resolution = resolution_of(k, finest.resolution);
+    if (!lacking_on_gpu(level.field, level.region, level.resolution).empty()) {
+      level.device = MeshingDevice::kCpu;  // its blocks are larger than those of the finest mesh
+    }
     MeshCollector collector;
     make_body_mesh(level, collector, job.stages());
     const SurfaceTree of_level(collector.mesh);
@@ -76,7 +80,7 @@ std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int
 }
 
 void write_levels(Job& job, const fs::path& output, const TriangleMesh& mesh, int resolution,
-                  std::vector<DetailLevel> coarser, const MeshFileInfo& info) {
+                  const std::vector<DetailLevel>& coarser, const MeshFileInfo& info) {
   auto list = nlohmann::ordered_json::array();
   const auto add = [&](int level, const TriangleMesh& made, int cells, const SurfaceDistanceReport& error) {
     list.push_back({{"file", level_file(output, level).filename().string()},
@@ -100,8 +104,8 @@ void write_levels(Job& job, const fs::path& output, const TriangleMesh& mesh, in
     return;
   }
   const std::vector<double> coverage = coverage_of(coarser, mesh.bounds().diagonal());
-  std::vector<TriangleMesh> all{mesh};
-  for (DetailLevel& level : coarser) all.push_back(std::move(level.mesh));
+  std::vector<const TriangleMesh*> all{&mesh};
+  for (const DetailLevel& level : coarser) all.push_back(&level.mesh);
   write_mesh_levels(all, coverage, output, info);
 }
 

@@ -33,6 +33,6 @@ std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int
 
 // Writes the coarser levels beside the mesh, or all levels into one .glb, and reports them.
 void write_levels(Job& job, const std::filesystem::path& output, const TriangleMesh& mesh, int resolution,
-                  std::vector<DetailLevel> coarser, const MeshFileInfo& info);
+                  const std::vector<DetailLevel>& coarser, const MeshFileInfo& info);
 
 }  // namespace astrolith

@@ -272,23 +272,33 @@ std::vector<std::uint64_t> sampled_members(const MemberRange& range, std::uint64
   return numbers;
 }
 
-// Says how much some members differ whose meshes are there and closed. Meshes of very many facets would take
-// longer to compare than to make.
-void say_differences(Job& job, const BodyRequest& body, const MemberRange& range) {
+// The meshes of some members that are there. Throws InputError for files that cannot be read back, or would
+// take longer to compare than to make.
+std::vector<TriangleMesh> some_meshes(const BodyRequest& body, const MemberRange& range) {
   constexpr std::uint64_t kFewest = 4;
-  constexpr std::size_t kMostTriangles = 1'000'000;
-  if (body.output.empty() || body.mesh.points || !body.mesh.tile.empty() || !body.mesh.patch.empty()) return;
+  constexpr std::uintmax_t kMostBytes = 32 << 20;  // a .ply of a million triangles and more
   std::vector<TriangleMesh> meshes;
   for (const std::uint64_t number : sampled_members(range, kFewest)) {
     const fs::path file = numbered(body, number).output;
-    if (!fs::is_regular_file(file) || !has_readable_extension(file)) continue;
+    if (!fs::is_regular_file(file)) continue;
+    if (!has_readable_extension(file)) throw InputError("no reader for " + mesh_extension(file));
+    if (fs::file_size(file) > kMostBytes) throw InputError("files of more than 32 MB");
     meshes.push_back(read_mesh(file));
-    if (meshes.back().triangles.size() > kMostTriangles) return;
   }
-  const Json figures = member_differences(meshes);
-  if (figures.is_null()) return;
-  job.summary["members"]["differences"] = figures;
-  job.say(words_of_differences(figures));
+  return meshes;
+}
+
+// Says how much some members differ, or why it does not. The set is made by then, whatever happens here.
+void say_differences(Job& job, const BodyRequest& body, const MemberRange& range) {
+  if (body.output.empty() || body.mesh.points || !body.mesh.tile.empty() || !body.mesh.patch.empty()) return;
+  try {
+    const Json figures = member_differences(some_meshes(body, range), job.progress("differences"));
+    if (figures.is_null()) return;
+    job.summary["members"]["differences"] = figures;
+    job.say(words_of_differences(figures));
+  } catch (const std::exception& e) {
+    if (!job.stopped()) job.say(fmt::format("note: how much members differ is not known: {}", e.what()));
+  }
 }
 
 // Makes the folder of the summary, and throws InputError where the summary cannot be written.

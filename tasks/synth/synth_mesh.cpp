@@ -90,15 +90,16 @@ void check_mesh_name(const MeshRequest& request, const fs::path& output) {
   if (request.points || request.labels || request.gravity.wanted())
     require_mesh_format(output, &MeshFormat::has_values);
   if (request.texture_coordinates) require_mesh_format(output, &MeshFormat::has_texture_coordinates);
-  if (request.even && format.counts != nullptr) {
-    throw InputError(output.string() + ": has facets of its own; leave out --even, or write a .ply");
+  if ((request.even || request.levels > 1) && format.counts != nullptr) {
+    throw InputError(output.string() +
+                     ": has facets of its own; leave out --even and --lod, or write a .ply");
   }
 }
 
 void check_mesh_outputs(const Job& job, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
     check_mesh_name(request, output);
-    require_writable(output);
+    for (const fs::path& file : level_files(output, request.levels)) require_writable(file);
   }
   check_preview(job, request.preview);
   for (const fs::path& map : {request.height_map, request.hazard.file}) {
@@ -188,7 +189,7 @@ void write_levels_of(Job& job, const MeshPlan& plan, const BodyMeshJob& made_by,
   for (DetailLevel& level : coarser) result.paint(level.mesh);
   if (coarser.empty() || level_file(plan.output, 1) != plan.output) result.write(quantities);
   if (coarser.empty()) return;
-  write_levels(job, plan.output, result.collected(), plan.resolution, std::move(coarser), result.info());
+  write_levels(job, plan.output, result.collected(), plan.resolution, coarser, result.info());
 }
 
 // Makes the mesh and all files that were asked for.

@@ -3,6 +3,7 @@
 
 #include <future>
 #include <string>
+#include <system_error>
 
 #include "cuda/device.h"
 #include "numerics/errors.h"
@@ -34,7 +35,11 @@ struct DeviceOption {
   // for it when it is destroyed.
   std::future<void> start() const {
     if (device == "cpu") return {};
-    return std::async(std::launch::async, [] { probe_device(); });
+    try {
+      return std::async(std::launch::async, [] { probe_device(); });
+    } catch (const std::system_error&) {  // no thread is left: choose() looks at the device
+      return {};
+    }
   }
 
   // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
@@ -42,6 +47,7 @@ struct DeviceOption {
   // own. With "cuda", a GPU that is missing or cannot be trusted is an InputError. The summary states the
   // device.
   ChosenDevice choose(Job& job) const {
+    if (has_failed_) return on_cpu(job, "it failed before");
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
       throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
@@ -64,10 +70,11 @@ struct DeviceOption {
     return chosen.gpu ? on_cpu(job, words) : chosen;
   }
 
-  // The CPU in place of a GPU that failed in the middle of the work. Where --device asked for the GPU,
-  // `error` goes on.
+  // The CPU in place of a GPU that failed in the middle of the work, from now on. Where --device asked for
+  // the GPU, `error` goes on.
   ChosenDevice after_failure(Job& job, const DeviceError& error) const {
     if (device == "cuda") throw;
+    has_failed_ = true;
     job.note(std::string(error.what()) + "; the CPU does the work from its beginning");
     job.summary["device"] = "cpu";
     return on_cpu(job, error.what());
@@ -81,6 +88,8 @@ struct DeviceOption {
     if (!asked) return {};
     return {false, "computed on the CPU" + (why.empty() ? "" : ": " + why)};
   }
+
+  mutable bool has_failed_ = false;  // the GPU, in the middle of a mesh
 };
 
 }  // namespace astrolith

@@ -176,7 +176,8 @@ void place_on_ground(const ImplicitField& field, Region& region) {
   for (int step = 0; step < steps; ++step) {
     MeshCollector ground;
     mesh_cube(field, region, kLookAround, ground, {});
-    if (ground.mesh.triangles.empty()) return;
+    if (ground.mesh.triangles.empty() && step == 0) return;
+    if (ground.mesh.triangles.empty()) break;
     region.plane = mean_plane(ground.mesh);
     if (!region.aligned) return;
     if (!region.plane) {
