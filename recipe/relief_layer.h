@@ -24,8 +24,9 @@ constexpr std::string_view arrangement_word(ReliefArrangement a) {
 // (synthesis/relief/relief_places.h). With maps of the surface along the axes a = x, y, z,
 //   n(p) = sum_q B(p - q) w(q) h(q) / sum_q B(p - q) w(q),   w = max((n_a^2 - 1/5) / (4/5), 0)^2 at q,
 // where the sums run over the places of all maps around p, B is the product of two cubic B-splines of the
-// distances along the two other axes, in spacings, and n_a the normal's component along the map's axis. h(q)
-// comes from the grey value v of the image's pixel for q:
+// distances along the two other axes, in spacings, and n_a the normal's component along the map's axis.
+// Beside the surface that a map shows it counts less and then not at all, and the height falls to 0
+// (synthesis/relief/relief_noise.h). h(q) comes from the grey value v of the image's pixel for q:
 //   h = low + (high - low) round((v - 1) (levels - 1) / 65534) / (levels - 1).
 inline constexpr int kMostFinerLevels = 6;
 inline constexpr double kLeastReliefEdge = 0.25,

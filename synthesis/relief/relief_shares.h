@@ -11,7 +11,7 @@
 namespace astrolith {
 
 // A point of the lattice takes shares[k] of the height at places[k]. The shares sum to 1, as height_at()
-// (relief_noise.h) blends heights.
+// (relief_noise.h) blends heights on smooth ground; at folds it weighs maps by their reach, too.
 class ReliefShares {
  public:
   // Expects places in the order of find_relief_places() and their tiles, which must outlive this, and their
