@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -31,11 +32,10 @@ std::vector<Vec3d> strays_of(const TargetBody& target, const FitCheck& check, do
   return strays;
 }
 
-// The parts and handles that a fit has beyond those of the target.
-std::int64_t excess_of(const ShapeFitResult& fit, const PartsAndHandles& wanted) {
+// How many parts and handles a fit has too many or too few.
+std::int64_t mismatch_of(const ShapeFitResult& fit, const PartsAndHandles& wanted) {
   const PartsAndHandles made = parts_and_handles(fit.check.topology);
-  return std::max<std::int64_t>(made.parts - wanted.parts, 0) +
-         std::max<std::int64_t>(made.handles - wanted.handles, 0);
+  return std::abs(made.parts - wanted.parts) + std::abs(made.handles - wanted.handles);
 }
 
 }  // namespace
@@ -44,13 +44,13 @@ std::size_t mend_relief(const TargetBody& target, const ShapeFitOptions& options
                         const Progress& progress, Recipe& recipe, ShapeFitResult& fit) {
   constexpr int kRounds = 8;
   const PartsAndHandles wanted = parts_and_handles(target);
-  const std::int64_t excess = excess_of(fit, wanted);
-  if (excess == 0) return 0;
+  const std::int64_t mismatch = mismatch_of(fit, wanted);
+  if (mismatch == 0) return 0;
   const Recipe whole = recipe;
   const ShapeFitResult as_it_was = fit;
   double turned = 0.002;  // of the diagonal
   std::size_t halved = 0;
-  for (int round = 0; round < kRounds && excess_of(fit, wanted) > 0; ++round) {
+  for (int round = 0; round < kRounds && mismatch_of(fit, wanted) > 0; ++round) {
     if (!report(progress, static_cast<double>(round) / kRounds, "topology")) break;
     Recipe softened = recipe;
     const std::size_t changed = halve_heights(strays_of(target, fit.check, turned), softened);
@@ -61,7 +61,7 @@ std::size_t mend_relief(const TargetBody& target, const ShapeFitOptions& options
     measure_recipe(target, recipe, options, fit);
     turned *= 0.7;
   }
-  if (excess_of(fit, wanted) < excess) return halved;
+  if (mismatch_of(fit, wanted) < mismatch) return halved;
   recipe = whole;  // lower heights have not helped
   fit = as_it_was;
   return 0;
