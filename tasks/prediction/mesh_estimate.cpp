@@ -52,11 +52,7 @@ void set_layers(const ProbedSurface& surface, const SampleGrid& grid, MeshEstima
   const double side = kBlockCells * grid.step;
   const double places =
       std::ceil(grid.cells[0] / double(kBlockCells)) * std::ceil(grid.cells[1] / double(kBlockCells));
-  const auto most = [&](double layers) {
-    return std::min(estimate.blocks * surface.largest_share(layers * side), layers * places);
-  };
-  estimate.blocks_of_layer = most(1.0);
-  estimate.blocks_of_three_layers = most(3.0);
+  estimate.blocks_of_layer = std::min(estimate.blocks * surface.largest_share(side), places);
 }
 
 }  // namespace

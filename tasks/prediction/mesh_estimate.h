@@ -14,7 +14,7 @@ struct MeshEstimate {
   double step = 0.0;  // edge of a cell, length units
   double area = 0.0;  // of the coarse mesh, square length units
   double triangles = 0.0, blocks = 0.0;
-  double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;  // the most in successive layers
+  double blocks_of_layer = 0.0;  // the most
   double seconds = 0.0;          // of one processor, without the bricks of Gabor impulses
   double list_bytes = 0.0;       // memory of the field narrowed to a block
   double own_evaluations = 0.0;  // of the field, for these figures

@@ -59,13 +59,14 @@ UseBytes bytes_of_use(const PlannedMesh& mesh) {
 // layers.
 double meshing_bytes(const MeshEstimate& mesh) {
   constexpr double kNode = sizeof(BlockNode<FieldBlock>) + 96.0;  // and what the allocator adds to its lists
-  // Corners: those of two layers, and the sorted ones of the older layer.
-  constexpr double kCheck = 36.0 + 0.5 * 32.0;
+  // Links, counts and parents of the half vertex of a triangle, and what growing arrays leave behind.
+  constexpr double kCheck = 0.5 * (64.0 + 4.0 + 8.0) + 26.0;
   if (!(mesh.blocks > 0.0)) return 0.0;
   const double of_block = mesh.triangles / mesh.blocks;
-  return mesh.blocks_of_three_layers * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) +
-         mesh.blocks_of_layer *
-             (2.0 * (mesh.list_bytes + kNode) + of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
+  // Three layers keep the memory of the largest that they held, while the nodes of the next are culled.
+  return mesh.blocks_of_layer *
+         (3.0 * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) + 3.0 * (mesh.list_bytes + kNode) +
+          of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
 }
 
 // The bricks of Gabor impulses that a mesh draws.
