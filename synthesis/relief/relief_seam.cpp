@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kRings = 24, kFirstCut = 7, kLastCut = 22, kCuts = kLastCut - kFirstCut + 1;
+constexpr std::size_t kSeamRings = 24, kFirstCut = 7, kLastCut = 22, kCuts = kLastCut - kFirstCut + 1;
 constexpr std::size_t kAll = ReliefSeam::kAngles;
 constexpr double kAngle = 2.0 * std::numbers::pi / static_cast<double>(kAll);
 
@@ -33,17 +33,17 @@ struct SeamCell {
   bool is_laid() const { return laid > 0.5 * all; }
   double mean() const { return laid > 0.0 ? mismatch / laid : 0.0; }
 };
-using Column = std::array<SeamCell, kRings>;
+using Column = std::array<SeamCell, kSeamRings>;
 
 std::vector<Column> cells_of(const std::vector<SeamPoint>& points) {
   std::vector<Column> sums(kAll), cells(kAll);
   for (const SeamPoint& p : points) {
-    const auto ring = static_cast<std::size_t>(std::sqrt(p.x * p.x + p.y * p.y) * kRings);
+    const auto ring = static_cast<std::size_t>(std::sqrt(p.x * p.x + p.y * p.y) * kSeamRings);
     const auto angle = std::min(static_cast<std::size_t>(angle_of(p.x, p.y)), kAll - 1);
-    if (ring < kRings) sums[angle][ring].add(1.0, {1.0, p.laid ? 1.0 : 0.0, p.laid ? p.mismatch : 0.0});
+    if (ring < kSeamRings) sums[angle][ring].add(1.0, {1.0, p.laid ? 1.0 : 0.0, p.laid ? p.mismatch : 0.0});
   }
   for (std::size_t a = 0; a < kAll; ++a) {
-    for (std::size_t r = 0; r < kRings; ++r) {
+    for (std::size_t r = 0; r < kSeamRings; ++r) {
       cells[a][r].add(2.0, sums[a][r]);
       cells[a][r].add(1.0, sums[next(a)][r]);
       cells[a][r].add(1.0, sums[before(a)][r]);
@@ -59,7 +59,7 @@ bool is_new(const Column& column, std::size_t cut, std::size_t ring) {
 // The mismatch along the borders between rings for a cut.
 double along_rings(const Column& column, std::size_t cut) {
   double sum = 0.0;
-  for (std::size_t r = kFirstCut - 1; r + 1 < kRings; ++r) {
+  for (std::size_t r = kFirstCut - 1; r + 1 < kSeamRings; ++r) {
     if (is_new(column, cut, r) != is_new(column, cut, r + 1))
       sum += static_cast<double>(r + 1) * kAngle * (column[r].mean() + column[r + 1].mean());
   }
@@ -69,7 +69,7 @@ double along_rings(const Column& column, std::size_t cut) {
 // The mismatch along the border between columns with two cuts.
 double between_columns(const Column& a, std::size_t cut_a, const Column& b, std::size_t cut_b) {
   double sum = 0.0;
-  for (std::size_t r = kFirstCut; r < kRings; ++r) {
+  for (std::size_t r = kFirstCut; r < kSeamRings; ++r) {
     if (is_new(a, cut_a, r) != is_new(b, cut_b, r)) sum += a[r].mean() + b[r].mean();
   }
   return sum;
@@ -136,7 +136,7 @@ ReliefSeam::ReliefSeam(const std::vector<SeamPoint>& points) {
     if (seam.cost < best.cost) best = seam;
   }
   for (std::size_t a = 0; a < kAngles; ++a)
-    radii_[a] = static_cast<double>(kFirstCut + best.cuts[a]) / static_cast<double>(kRings);
+    radii_[a] = static_cast<double>(kFirstCut + best.cuts[a]) / static_cast<double>(kSeamRings);
 }
 
 ReliefSeam ReliefSeam::smoothed(double width) const {
