@@ -207,7 +207,7 @@ struct FoundSheets {
 };
 
 void add_cell(const Lines& lines, const FoundSheets& found, ReliefTiles& to) {
-  const auto& [u, v, w] = found.corner;
+  const std::int32_t u = found.corner[0], v = found.corner[1], w = found.corner[2];
   const auto add_tile = [&](const Sheet& sheet) {
     to.places.insert(to.places.end(), sheet.places.begin(), sheet.places.end());
     to.sheets.push_back(middle_plane(lines, sheet, u, v, w));
