@@ -85,7 +85,8 @@ class BlockCuller {
     const auto longest = static_cast<unsigned>(std::max(grid_.blocks(0), grid_.blocks(1)));
     int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
     const auto roots = [&](int s) {
-      return double(layers) * ((grid_.blocks(0) + s - 1) / s) * ((grid_.blocks(1) + s - 1) / s);
+      const int along_x = (grid_.blocks(0) + s - 1) / s, along_y = (grid_.blocks(1) + s - 1) / s;
+      return double(layers) * along_x * along_y;
     };
     while (size > 2 && roots(size / 2) <= kMostRoots &&
            roots(size / 2) * double(all_numbers_.size()) <= kMostChoices) {
