@@ -83,7 +83,7 @@ struct StoredMesh {
   const TriangleMesh& mesh;
   std::optional<LongitudeLatitude> map;
 
-  // Those that are there twice counted twice.
+  // Vertices that are there twice count twice.
   std::uint64_t num_vertices() const { return map ? map->texcoords.size() : mesh.vertices.size(); }
 };
 

@@ -101,7 +101,7 @@ class ReliefPoints {
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma);
 
-// The same of three fields at once, which takes hardly longer.
+// The means of three fields at once, which take hardly longer than those of one.
 using ThreeFields = std::array<std::vector<double>, 3>;
 ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma);
 
