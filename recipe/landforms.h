@@ -72,10 +72,7 @@ struct Population {
     if (weibull) weibull->scale *= ratio;
     if (clusters) clusters->radius *= ratio;
     if (locality) locality->width *= ratio;
-    if (mask) {
-      mask->from *= ratio;
-      mask->to *= ratio;
-    }
+    if (mask) mask->rescale(ratio);
   }
 };
 

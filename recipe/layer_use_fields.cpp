@@ -51,7 +51,10 @@ void check_layer_use(const Recipe& recipe, std::size_t index, const Place& place
   const std::span<const Layer> before = std::span(recipe.layers).first(index);
   if (const LayerUse* use = use_of(layer)) {
     if (use->locality) check_group(*use->locality, recipe.body, place.field("locality"));
-    if (use->mask) check_masking_layer(*use->mask, before, place.field("mask"));
+    if (use->mask) {
+      check_masking_layer(*use->mask, before, place.field("mask"));
+      if (use->mask->over) place.field("mask").field("over").fail("only a population has it; leave it out");
+    }
   }
   if (const Population* drawn = population_of(layer)) {
     const Place at = place.field("population");
@@ -79,6 +82,7 @@ void visit_fields(FieldVisitor& v, LayerMask& mask) {
   v.required("layer", mask.layer);
   v.required("from", mask.from, kAnyNumber);
   v.required("to", mask.to, kAnyNumber);
+  v.field("over", mask.over, kPositive);
   v.rule(check_border, mask);
 }
 

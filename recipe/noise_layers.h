@@ -51,11 +51,24 @@ struct Combination {
 };
 
 // Multiplies a layer's weight by t^2 (3 - 2 t), t = (n - from) / (to - from) within [0, 1], where n is the
-// height of another layer.
+// height of another layer. With `over`, n is the roughness of those heights over a distance: the root mean
+// square of what the height at a place differs from the mean of two opposite heights at that distance
+// (synthesis/landforms/ground_roughness.h). Only populations can have it.
 struct LayerMask {
   std::string layer;  // name of an earlier layer of noise; if several have the name, the last of them
   double from = 0.0;  // length units
   double to = 1.0;    // length units; may lie below `from`, but differs by more than a millionth
+  std::optional<double> over = std::nullopt;  // length units, > 0
+
+  // Multiplies heights, or all lengths, by the ratio.
+  void rescale_heights(double ratio) {
+    from *= ratio;
+    to *= ratio;
+  }
+  void rescale(double ratio) {
+    rescale_heights(ratio);
+    if (over) *over *= ratio;
+  }
 };
 
 // How a layer of noise acts on the surface. Craters and boulders have places of their own instead.

@@ -139,6 +139,7 @@ class StackLandforms {
   double widest_boulder() const;
   double height_reach();
   PlaceWeight weight_of(const Population& drawn);
+  PlaceWeight mask_of_places(const Population& drawn, const std::string& place);
   void report_sizes_left_out(const Population& drawn);
   const BareSurface& bare();
   std::vector<Vec3d> unwarped(std::vector<Vec3d> points) const;

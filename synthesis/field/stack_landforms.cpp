@@ -3,6 +3,7 @@
 
 #include "numerics/parallel_for.h"
 #include "synthesis/field/layer_stack_internal.h"
+#include "synthesis/landforms/ground_roughness.h"
 
 namespace astrolith {
 namespace {
@@ -185,23 +186,33 @@ PlaceWeight StackLandforms::weight_of(const Population& drawn) {
   const auto arrays = std::make_shared<ArrayStore>();
   std::optional<LocalWeight> local;
   if (drawn.locality) local = make_local_weight(*drawn.locality, *stack_.recipe.body, place, *arrays);
+  const PlaceWeight mask = mask_of_places(drawn, place);
+  return [arrays, local, mask](const Vec3d& p) {
+    float weight = mask ? mask(p) : 1.0f;
+    if (local) weight *= weight_at(*local, arrays->view(), to_float(p));
+    return weight;
+  };
+}
+
+// The weight by a population's mask; empty where it has none.
+PlaceWeight StackLandforms::mask_of_places(const Population& drawn, const std::string& place) {
+  if (!drawn.mask) return {};
+  const auto number = stack_.numbers.find(stack_.masking());
+  if (number == stack_.numbers.end()) fail_without_height(*drawn.mask, place);
   LayerJoin join;
-  std::size_t masking = 0;
-  if (drawn.mask) {
-    const auto number = stack_.numbers.find(stack_.masking());
-    if (number == stack_.numbers.end()) fail_without_height(*drawn.mask, place);
-    masking = number->second;
-    set_mask_range(*drawn.mask, join);
+  set_mask_range(*drawn.mask, join);
+  const auto height = [&model = stack_.model, masking = number->second](const Vec3d& p) {
+    return layer_height_at(model, masking, p);
+  };
+  if (!drawn.mask->over) {
+    return [height, join](const Vec3d& p) {
+      return smooth_step(height(p), join.mask_from, join.mask_inverse_range);
+    };
   }
-  return
-      [&model = stack_.model, arrays, local, join, masking, masked = drawn.mask.has_value()](const Vec3d& p) {
-        float weight = 1.0f;
-        if (masked) {
-          weight *= smooth_step(layer_height_at(model, masking, p), join.mask_from, join.mask_inverse_range);
-        }
-        if (local) weight *= weight_at(*local, arrays->view(), to_float(p));
-        return weight;
-      };
+  return [height, join, over = *drawn.mask->over, &surface = bare()](const Vec3d& p) {
+    const double roughness = roughness_around(p, surface.normal(p), over, height);
+    return smooth_step(static_cast<float>(roughness), join.mask_from, join.mask_inverse_range);
+  };
 }
 
 void StackLandforms::report_sizes_left_out(const Population& drawn) {

@@ -10,6 +10,7 @@
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/finish/rough_ground.h"
 #include "synthesis/landforms/population_cells.h"
 
 namespace astrolith {
@@ -171,7 +172,10 @@ Layer layer_of(const KnownLandforms& known, const Population& population, int se
 class Finishing {
  public:
   Finishing(Finish& finish, double meters, double longest_side)
-      : finish_(finish), meters_(meters), most_by_cells_(round_down(kGreatestByCells * longest_side)) {}
+      : finish_(finish),
+        meters_(meters),
+        most_by_cells_(round_down(kGreatestByCells * longest_side)),
+        rough_(rough_ground(finish.recipe)) {}
 
   void add(const KnownLandforms& known) {
     const double least = std::max(finish_.to, known.least / meters_),
@@ -188,16 +192,26 @@ class Finishing {
     if (!(least < 0.999 * greatest)) return;
     Population population = population_of_sizes(known, least, greatest, meters_);
     population.by_cells = by_cells;
+    const double density = *population.density;
+    if (!known.craters && rough_) spare_smooth_ground(population);
     const int place = static_cast<int>(finish_.recipe.layers.size());
     finish_.recipe.layers.push_back(
         layer_of(known, population, kFirstSeed + static_cast<int>(finish_.layers.size())));
-    finish_.layers.push_back({place, known, population.least_diameter, population.greatest_diameter,
-                              *population.density, known.measured_from / meters_});
+    finish_.layers.push_back({place, known, population.least_diameter, population.greatest_diameter, density,
+                              known.measured_from / meters_});
+  }
+
+  // Counts of a known body are means over its ground, smooth and rough.
+  void spare_smooth_ground(Population& population) {
+    population.mask = rough_->mask;
+    population.density = round_to_seven_digits(*population.density / rough_->mean_weight);
+    finish_.rough_share = rough_->mean_weight;
   }
 
   Finish& finish_;
   double meters_;
   double most_by_cells_;
+  std::optional<RoughGround> rough_;
 };
 
 }  // namespace

@@ -56,7 +56,7 @@ struct FinishLayer {
   int layer = 0;  // its index in the recipe
   KnownLandforms known;
   double least = 0.0, greatest = 0.0;
-  double density = 0.0;        // of these sizes, per squared length unit
+  double density = 0.0;        // mean over the body, of these sizes, per squared length unit
   double measured_from = 0.0;  // smaller ones are drawn by the same law without being measured
 };
 
@@ -65,6 +65,7 @@ struct Finish {
   double from = 0.0, to = 0.0;
   std::vector<FinishLayer> layers;
   std::string_view without_craters;  // of KnownBody
+  double rough_share = 1.0;          // mean weight of boulders' places: below 1 where smooth ground is spared
 };
 
 // The finest size that a recipe describes: the diameter of the smallest crater or boulder that it lists or
@@ -72,7 +73,8 @@ struct Finish {
 // diameter of the smallest additive metaball. In length units.
 double finest_size(const Recipe& recipe);
 
-// The recipe with the landforms of a known body after its layers, craters first. Throws InputError, naming
+// The recipe with the landforms of a known body after its layers, craters first. Where the recipe has a
+// relief, boulders spare the ground that it shows smooth: rough_ground(). Throws InputError, naming
 // `name`, for a body that is not known, a recipe without a body, a unit other than m and km, and for sizes
 // that leave nothing to draw.
 Finish finish_recipe(const Recipe& recipe, const std::string& name, const FinishRequest& request);

@@ -110,10 +110,7 @@ Layer rescaled(const Layer& layer, double ratio) {
   LayerUse* use = use_of(result);
   if (use == nullptr) return result;
   if (use->locality) use->locality->width *= ratio;
-  if (use->mask) {
-    use->mask->from *= ratio;
-    use->mask->to *= ratio;
-  }
+  if (use->mask) use->mask->rescale(ratio);
   use->combination.width *= ratio;
   return result;
 }

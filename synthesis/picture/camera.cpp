@@ -1,5 +1,7 @@
 #include "synthesis/picture/camera.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -44,7 +46,7 @@ class CameraWords {
         {"distance", 1}, {"radii", 1}, {"target", 3}, {"up", 3}, {"roll", 1}};
     const auto known = kCounts.find(word);
     if (known == kCounts.end()) {
-      fail("\"" + word.substr(0, 40) + "\" is no word of a camera; write " + std::string(kCameraWords));
+      fail(fmt::format("\"{:.40}\" is no word of a camera; write {}", word, kCameraWords));
     }
     std::array<double, 3> values{};
     for (std::size_t k = 0; k < known->second; ++k) values[k] = next_number(word, in);

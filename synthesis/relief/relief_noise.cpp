@@ -11,6 +11,7 @@
 #include "synthesis/relief/relief_level_ground.h"
 #include "synthesis/relief/relief_likeness.h"
 #include "synthesis/relief/relief_picture.h"
+#include "synthesis/relief/relief_room.h"
 
 namespace astrolith {
 namespace {
@@ -100,10 +101,10 @@ void encode(const std::vector<double>& heights, double scale, ReliefGround& grou
   }
 }
 
-// Heights of the layer drawn for other places or another body, and what the levels below the model are made
-// of.
-void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRelief& measured,
-          ReliefGround& ground) {
+// Heights of the layer drawn for other places of `body` or for another body, and what the levels below the
+// model are made of.
+void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body,
+          const MeasuredRelief& measured, ReliefGround& ground) {
   const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
   std::vector<double> heights = measured.heights;
   const double scale = layer.donor_scale;  // heights are in the unit of the donor
@@ -111,6 +112,8 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRel
   if (layer.arrangement == ReliefArrangement::kLike) {
     heights = like_heights(ground.places, ground.tiles, patches, layer.donor.has_value(), layer.spacing,
                            options, source.place);
+    const std::vector<double> own = layer.donor ? std::vector(heights.size(), 0.0) : measured.heights;
+    keep_room(body, ReliefPoints(ground.places, spacing_of(layer)), scale, own, heights);
     encode(heights, scale, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
@@ -272,12 +275,12 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
   if (layer.donor) {
     const DonorBody donor(*layer.donor, layer.spacing, source);
     const std::vector<double> heights = heights_of(layer, codes_of(layer, donor.places, source.place));
-    return draw(layer, source, {donor.ground(), donor.places, donor.tiles, heights}, *this);
+    return draw(layer, source, body, {donor.ground(), donor.places, donor.tiles, heights}, *this);
   }
   codes = codes_of(layer, places, source.place);
   if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0 && !layer.fill_unseen) return;
   const std::vector<double> heights = heights_of(layer, codes);
-  draw(layer, source, {body, places, tiles, heights}, *this);
+  draw(layer, source, body, {body, places, tiles, heights}, *this);
 }
 
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {

@@ -59,12 +59,30 @@ std::vector<double> ReliefValues::values_of(const std::vector<double>& coefficie
 std::vector<double> ReliefValues::coefficients_of(const std::vector<double>& values) const {
   constexpr int kIterations = 10;
   constexpr double kDamping = 1.5;
+  const std::vector<Interval> limits = limits_of(values);
   std::vector<double> coefficients = values;
   for (int pass = 0; pass < kIterations; ++pass) {
     const std::vector<double> reached = values_of(coefficients);
-    for (std::size_t i = 0; i < values.size(); ++i) coefficients[i] += kDamping * (values[i] - reached[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      coefficients[i] =
+          std::clamp(coefficients[i] + kDamping * (values[i] - reached[i]), limits[i].low, limits[i].high);
+    }
   }
   return coefficients;
+}
+
+// The values that a place takes part in, and their range once more on both sides.
+std::vector<Interval> ReliefValues::limits_of(const std::vector<double>& values) const {
+  std::vector<Interval> limits(values.size());
+  for_each_place(values.size(), [&](std::size_t i) {
+    double low = values[i], high = values[i];
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
+      low = std::min(low, values[places_[k]]);
+      high = std::max(high, values[places_[k]]);
+    }
+    limits[i] = {low - (high - low), high + (high - low)};
+  });
+  return limits;
 }
 
 }  // namespace astrolith

@@ -68,10 +68,7 @@ GaborLayer scaled(const GaborLayer& layer, double pixel_size, double height) {
   result.pixel_size = pixel_size;
   result.height_rms *= height;
   result.use.combination.width *= height;
-  if (result.use.mask) {
-    result.use.mask->from *= height;
-    result.use.mask->to *= height;
-  }
+  if (result.use.mask) result.use.mask->rescale_heights(height);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "synthesis/landforms/population.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/reliefs.h"
 
 namespace astrolith {
 namespace {
@@ -95,9 +96,7 @@ TEST(KnownPopulation, BeginsAtTheFinestSizeOfTheRecipe) {
 TEST(KnownPopulation, BeginsBelowTheHeightsOfARelief) {
   Recipe recipe = testing::sphere_recipe(0.25);
   recipe.length_unit = "km";
-  ReliefLayer relief;
-  relief.spacing = 0.004;
-  recipe.layers = {relief};
+  recipe.layers = {testing::relief_layer(recipe, 0.004, -0.001, 0.001, [](const Vec3d&) { return 0.0; })};
   EXPECT_DOUBLE_EQ(finest_size(recipe), 0.004);
   const Finish finish = finish_recipe(recipe, "body.json", {"itokawa", {}, 0.001});
   EXPECT_LE(finish.layers.back().greatest, 0.004);
