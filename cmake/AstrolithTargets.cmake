@@ -69,10 +69,15 @@ function(astrolith_library name)
   set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
 endfunction()
 
-# astrolith_room(NAME SOURCES a.cpp ...)  adds a folder's sources to library NAME
+# astrolith_room(NAME SOURCES a.cpp ... [NATIVE b.cpp ...] [WEB c.cpp ...])  adds a folder's sources to library NAME. NATIVE
+# sources need a package that WebAssembly has not; WEB sources take the place of such in the web build.
 function(astrolith_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
-  target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "SOURCES;NATIVE;WEB" ${ARGN})
+  if(EMSCRIPTEN)
+    target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES} ${ARG_WEB})
+  else()
+    target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES} ${ARG_NATIVE})
+  endif()
 endfunction()
 
 # astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds NAME.cpp of this folder, with further sources

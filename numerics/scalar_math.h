@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "numerics/emulated_fma.h"
 #include "numerics/host_device.h"
 #include "numerics/portable_angles.h"
 #include "numerics/portable_double.h"
@@ -33,6 +34,8 @@ ASTROLITH_HD inline float float_of(std::int32_t bits) {
 ASTROLITH_HD inline float fma(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   return __fmaf_rn(a, b, c);
+#elif defined(__wasm__)
+  return emulated_fma(a, b, c);
 #else
   return __builtin_fmaf(a, b, c);
 #endif

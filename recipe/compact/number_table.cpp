@@ -239,7 +239,8 @@ std::size_t longest_run(const IntegerRows& rows) {
   };
   std::size_t longest = 0, run = 0;
   for (std::size_t i = 0; i < rows.rows(); ++i) {
-    run = i > 0 && std::ranges::equal(row(i), row(i - 1)) ? run + 1 : 1;
+    const bool same = i > 0 && std::equal(row(i).begin(), row(i).end(), row(i - 1).begin());
+    run = same ? run + 1 : 1;
     longest = std::max(longest, run);
   }
   return longest;

@@ -24,6 +24,7 @@
 #include "tasks/synth/synth_members.h"
 #include "tasks/synth/synth_mesh.h"
 #include "tasks/synth/synth_texture.h"
+#include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
@@ -245,11 +246,7 @@ void synthesize(Job& job, const SynthOptions& options) {
   const Recipe recipe = read_input(job, options);
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
-  if (!recipe.body) {
-    throw InputError(options.recipe.string() +
-                     ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
-                     "with --texture WxH");
-  }
+  require_body(recipe, options.recipe);
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
   const BodyRequest& body = options.body;
   const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();

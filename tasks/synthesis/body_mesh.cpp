@@ -70,6 +70,13 @@ BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const Stag
   return result;
 }
 
+void require_body(const Recipe& recipe, const std::filesystem::path& file) {
+  if (recipe.body) return;
+  throw InputError(file.string() +
+                   ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
+                   "with --texture WxH");
+}
+
 ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
                               const Progress& progress) {
   ImplicitField field(recipe, file.string(), region.cube(), progress);

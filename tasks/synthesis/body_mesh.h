@@ -38,6 +38,9 @@ struct BodyMeshReport {
 // where it was cut; the sink has been filled by then.
 BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const StageProgress& progress);
 
+// Throws InputError for a recipe of layers alone. `file` is the recipe's.
+void require_body(const Recipe& recipe, const std::filesystem::path& file);
+
 // The field of a recipe's body in a region. Throws InputError for a body that no point of space reaches, and
 // what ImplicitField throws.
 ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region,

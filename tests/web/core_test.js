@@ -1,0 +1,106 @@
+// The core of the page against synth: the same meshes, recipes and messages. It needs node and no browser.
+//   node core_test.js FOLDER_OF_CORE SYNTH [CELLS]
+"use strict";
+const {spawnSync} = require("child_process");
+const crypto = require("crypto");
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+const {hostileRecipes} = require("./hostile_recipes.js");
+const {loadCore} = require("./node_core.js");
+
+const [coreFolder, synthFile, cells = "48"] = process.argv.slice(2);
+const synth = path.resolve(synthFile);
+const examples = path.join(__dirname, "../../synthesis/examples");
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "core_test_"));
+const sha256 = bytes => crypto.createHash("sha256").update(bytes).digest("hex");
+let failures = 0;
+
+function check(good, words) {
+  if (good) return true;
+  ++failures;
+  console.log("FAILED: " + words);
+  return false;
+}
+
+// What synth makes of a recipe in `folder`: {status, message, files}, the files in the order of their names.
+function runSynth(name, names, options) {
+  const ran = spawnSync(synth, [name, ...options, "--quiet"], {cwd: folder, encoding: "utf8", timeout: 60000});
+  const files = names.map(file => path.join(folder, file)).map(file => fs.existsSync(file) ? fs.readFileSync(file) : null);
+  names.forEach(file => fs.rmSync(path.join(folder, file), {force: true}));
+  return {status: ran.status, message: ran.stderr.trim().replace(/^synth: /, ""), files};
+}
+
+// The same of the core; `work` gives its files.
+function runCore(work) {
+  try {
+    return {status: 0, message: "", files: work()};
+  } catch (error) {
+    if (error.status === undefined) throw error;  // a trap
+    return {status: error.status, message: error.message, files: []};
+  }
+}
+
+// Every example has the mesh and the written recipes of synth, byte for byte.
+function testExamples(core) {
+  let same = 0, lacking = 0;
+  for (const name of fs.readdirSync(examples).sort()) {
+    const bytes = fs.readFileSync(path.join(examples, name));
+    fs.writeFileSync(path.join(folder, name), bytes);
+    const made = runCore(() => {
+      core.make(bytes, name, Number(cells));
+      return [core.writeMesh("ply").bytes, core.writeMesh("glb").bytes, core.writeRecipe(bytes, name, "json").bytes, core.writeRecipe(bytes, name, "astro").bytes];
+    });
+    if (/beside the recipe/.test(made.message)) {
+      ++lacking;
+      console.log(made.message);
+      continue;
+    }
+    const right = [
+      ...runSynth(name, ["mesh.ply", "again.json"], ["-o", "mesh.ply", "--write-recipe", "again.json", "--resolution", cells]).files,
+      ...runSynth(name, ["mesh.glb", "again.astro"], ["-o", "mesh.glb", "--write-recipe", "again.astro", "--resolution", cells]).files,
+    ];
+    const [ply, json, glb, astro] = right;
+    const equal = [ply, glb, json, astro].map((file, i) => made.files[i] !== undefined && file !== null && sha256(file) === sha256(made.files[i]));
+    if (check(equal.every(Boolean), `${name}: ply, glb, json, astro equal synth's: ${equal} ${made.message}`)) ++same;
+  }
+  console.log(`examples: ${same} with the SHA-256 of synth at ${cells} cells, ${lacking} that need files`);
+}
+
+// Damaged recipes get the message of synth and no trap; where they are right all the same, the mesh.
+function testHostileRecipes(core) {
+  let refused = 0, made = 0;
+  for (const {name, bytes} of hostileRecipes(160)) {
+    fs.writeFileSync(path.join(folder, name), bytes);
+    const right = runSynth(name, ["mesh.ply"], ["-o", "mesh.ply", "--resolution", "16"]);
+    const got = runCore(() => {
+      core.make(bytes, name, 16);
+      return [core.writeMesh("ply").bytes];
+    });
+    check(got.status === right.status && got.message === right.message, `${name}: ${got.status} ${got.message}\n  synth: ${right.status} ${right.message}`);
+    if (right.status === 0 && got.status === 0) check(sha256(got.files[0]) === sha256(right.files[0]), `${name}: another mesh`);
+    right.status === 0 ? ++made : ++refused;
+  }
+  console.log(`damaged recipes: ${refused} refused in the words of synth, ${made} made as it makes them`);
+}
+
+// A host that says no stops the work, and the core goes on to the next call.
+async function testStop() {
+  let calls = 0, stops = true;
+  const core = await loadCore(coreFolder, {goesOn: () => ++calls < 3 || !stops});
+  const bytes = fs.readFileSync(path.join(examples, "kernels.json"));
+  const stopped = runCore(() => core.make(bytes, "kernels.json", 64));
+  check(stopped.status === 1 && /stopped/.test(stopped.message), `a stopped mesh: ${stopped.status} ${stopped.message}`);
+  stops = false;
+  check(runCore(() => core.make(bytes, "kernels.json", 16)).status === 0, "a mesh after a stop");
+}
+
+async function main() {
+  const core = await loadCore(coreFolder);
+  testExamples(core);
+  testHostileRecipes(core);
+  await testStop();
+  fs.rmSync(folder, {recursive: true});
+  process.exit(failures > 0 ? 1 : 0);
+}
+main();

@@ -1,0 +1,11 @@
+// The core in node: loadCore(FOLDER) gives the calls of web/page/core_calls.js once the module is ready.
+"use strict";
+const fs = require("fs");
+const path = require("path");
+const coreCalls = require("../../web/page/core_calls.js");
+
+exports.loadCore = async function (folder, settings = {}) {
+  const makeCore = require(path.resolve(folder, "astrolith_core.js"));
+  const wasmBinary = fs.readFileSync(path.join(folder, "astrolith_core.wasm"));
+  return coreCalls(await makeCore({wasmBinary, ...settings}));
+};

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""Opens the page that makes bodies in headless Chromium and works it as a user does.
+
+    page_test.py PAGE SYNTH
+
+Exit status 77 says that selenium or Chromium is missing, so that nothing was tested.
+"""
+
+import hashlib
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError as error:
+    print(f"skipped: {error.name} is missing (scripts/setup.sh --browser)")
+    sys.exit(SKIPPED)
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+CELLS = 48
+
+
+def browser(width=1300, height=900):
+    options = webdriver.ChromeOptions()
+    # ANGLE's swiftshader is WebGL without a GPU.
+    for argument in ("headless=new", "no-sandbox", "disable-dev-shm-usage", f"window-size={width},{height}",
+                     "use-angle=swiftshader", "enable-unsafe-swiftshader"):  # fmt: skip
+        options.add_argument(f"--{argument}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options)
+    driver.set_script_timeout(120)
+    return driver
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+class Page:
+    def __init__(self, driver, address):
+        self.driver = driver
+        driver.get(address)
+        self.wait(lambda: self.script("return document.body.dataset.ready === 'yes'"))
+
+    def script(self, code, *arguments):
+        return self.driver.execute_script(code, *arguments)
+
+    def wait(self, happened, seconds=60):
+        end = time.monotonic() + seconds
+        while not happened():
+            check(time.monotonic() < end, "the page takes too long")
+            time.sleep(0.05)
+
+    def settled(self):
+        self.driver.execute_async_script("const done = arguments[0]; window.astrolith.settled().then(done)")
+
+    def open(self, text, name):
+        self.driver.execute_async_script(
+            "const [text, name, done] = arguments; window.astrolith.openText(text, name).then(done)", text, name
+        )
+        self.settled()
+
+    def mesh_hash(self):
+        return self.driver.execute_async_script(
+            "const done = arguments[0]; window.astrolith.meshFile('ply').then(file => done(file.sha256), error => done(String(error)))"
+        )
+
+    def set_cells(self, cells):
+        self.script("window.astrolith.setCells(arguments[0])", cells)
+        self.settled()
+
+    def text(self, element):
+        return self.driver.find_element(By.ID, element).text
+
+    def recipe(self):
+        return json.loads(self.script("return window.astrolith.recipeText()"))
+
+    def input(self, label, kind="range"):
+        """The control of a field in the form, whose groups are opened on the way."""
+        element = f'#form input[type="{kind}"][aria-label="{label}"]'
+        return self.driver.find_element(By.CSS_SELECTOR, element)
+
+    def slide(self, label, value):
+        self.script(
+            "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'));"
+            "arguments[0].dispatchEvent(new Event('change'))", self.input(label), value)  # fmt: skip
+        self.settled()
+
+
+class Synth:
+    def __init__(self, program):
+        self.program = str(program.resolve())
+
+    def run(self, text, name, cells=CELLS):
+        """The hash of synth's mesh and its message."""
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / name).write_text(text)
+            command = [self.program, name, "-o", "mesh.ply", "--resolution", str(cells), "--quiet"]
+            ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+            mesh = pathlib.Path(folder) / "mesh.ply"
+            digits = hashlib.sha256(mesh.read_bytes()).hexdigest() if mesh.exists() else ""
+            return digits, ran.stderr.strip().removeprefix("synth: ")
+
+
+def example(name):
+    return (ROOT / "synthesis/examples" / name).read_text()
+
+
+def check_slider(page, synth):
+    page.open(example("fractal_hills.json"), "fractal_hills.json")
+    page.set_cells(CELLS)
+    before = page.mesh_hash()
+    check(before == synth.run(page.script("return window.astrolith.recipeText()"), "fractal_hills.json")[0], "the mesh is not synth's")
+    label = next(
+        slider.get_attribute("aria-label")
+        for slider in page.driver.find_elements(By.CSS_SELECTOR, "#form input[type=range]")
+        if slider.get_attribute("aria-label").startswith("layers[0].amplitude")
+    )
+    page.slide(label, 330)
+    after = page.mesh_hash()
+    check(after != before, "a slider changes nothing")
+    check(after == synth.run(page.script("return window.astrolith.recipeText()"), "fractal_hills.json")[0], "the changed mesh is not synth's")
+    page.driver.find_element(By.ID, "undo").click()
+    page.settled()
+    check(page.mesh_hash() == before, "undo does not bring the mesh back")
+
+
+def check_layers(page):
+    """A layer is added by the keyboard, switched off and removed."""
+    count = len(page.recipe()["layers"])
+    choice = page.driver.find_element(By.CSS_SELECTOR, '#form select[aria-label="add to layers"]')
+    choice.send_keys("worley" + Keys.ENTER)
+    page.settled()
+    layers = page.recipe()["layers"]
+    check(len(layers) == count + 1 and layers[-1]["type"] == "worley", f"no layer was added: {layers}")
+    with_layer = page.mesh_hash()
+    page.driver.find_element(By.CSS_SELECTOR, f'#form input[aria-label="layers[{count}] on"]').send_keys(Keys.SPACE)
+    page.settled()
+    check(len(page.recipe()["layers"]) == count, "a layer that is off is in the recipe")
+    check(page.mesh_hash() != with_layer, "a layer that is off changes the mesh")
+
+
+def check_refusal(page, synth):
+    text = example("fractal_hills.json")
+    page.open(text, "fractal_hills.json")
+    box = page.input("layers[0].frequency", "text")
+    box.clear()
+    box.send_keys("-3" + Keys.TAB)
+    page.settled()
+    message = synth.run(page.script("return window.astrolith.recipeText()"), "fractal_hills.json")[1]
+    check(message != "", "synth takes a negative frequency")
+    check(page.text("refusal") == message, f"the page says {page.text('refusal')!r}, synth says {message!r}")
+    beside = page.driver.find_element(By.CSS_SELECTOR, "#form .refused .refusal")
+    field = beside.find_element(By.XPATH, "..").text
+    check("frequency" in field, f"the refusal stands beside {field!r}")
+
+
+def check_bad_file(page, synth):
+    text = example("kernels.json")[:700]
+    page.open(text, "cut.json")
+    check(page.text("refusal") == synth.run(text, "cut.json")[1], f"of a cut file the page says {page.text('refusal')!r}")
+
+
+def check_link(page, address):
+    page.open(example("kernels.json"), "kernels.json")
+    page.set_cells(32)
+    link = page.driver.execute_async_script("const done = arguments[0]; window.astrolith.link().then(done)")
+    before = page.mesh_hash()
+    page.driver.get("about:blank")
+    again = Page(page.driver, link)
+    again.settled()
+    again.set_cells(32)
+    check(again.mesh_hash() == before, "a link makes another body")
+    check(link.startswith(address), f"a link leads elsewhere: {link[:80]}")
+
+
+def check_quiet(driver):
+    errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
+    check(not errors, f"the browser says: {errors}")
+    requests = [entry for entry in driver.get_log("performance") if '"url":"http' in entry["message"]]
+    check(not requests, "the page asks the network for something")
+
+
+def check_phone(address):
+    driver = browser(500, 900)
+    try:
+        page = Page(driver, address)
+        page.settled()
+        check(page.script("return document.documentElement.scrollWidth <= innerWidth"), "the page is wider than a phone")
+        check_quiet(driver)
+    finally:
+        driver.quit()
+
+
+def main():
+    file, program = map(pathlib.Path, sys.argv[1:])
+    if not shutil.which("chromedriver"):
+        print("skipped: chromedriver is missing (scripts/setup.sh --browser)")
+        return SKIPPED
+    address, synth = file.resolve().as_uri(), Synth(program)
+    driver = browser()
+    try:
+        page = Page(driver, address)
+        page.settled()
+        check("triangles" in page.text("figures"), f"no body after the start: {page.text('figures')!r}")
+        check_slider(page, synth)
+        check_layers(page)
+        check_refusal(page, synth)
+        check_bad_file(page, synth)
+        check_link(page, address)
+        check_quiet(driver)
+    finally:
+        driver.quit()
+    check_phone(address)
+    print("page: slider, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

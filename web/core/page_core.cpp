@@ -1,0 +1,179 @@
+#include "web/core/page_core.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/io/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/files/sha256.h"
+#include "numerics/vec3_json.h"
+#include "numerics/version/code_version.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/field/surface_colors.h"
+#include "tasks/synthesis/body_mesh.h"
+#include "tasks/synthesis/erode_body.h"
+
+namespace astrolith {
+namespace {
+
+// What the calls have made so far.
+struct PageState {
+  std::string message, figures, written, sha256;
+  TriangleMesh mesh;
+  MeshFileInfo info;
+  std::vector<float> positions, normals;
+};
+
+PageState& state() {
+  static PageState made;
+  return made;
+}
+
+// Does the work, and turns what it throws into a status and a message.
+template <class Work>
+int status_of(const Work& work) {
+  state().message.clear();
+  try {
+    work();
+    return 0;
+  } catch (const InputError& error) {
+    state().message = error.what();
+    return 2;
+  } catch (const std::bad_alloc&) {
+    state().message = "the mesh needs more memory than a page may have; lower the resolution";
+  } catch (const std::exception& error) {
+    state().message = error.what();
+  }
+  return 1;
+}
+
+bool host_goes_on(double fraction, std::string_view) { return astrolith_host_goes_on(fraction) != 0; }
+
+// Refuses a recipe whose layers name files, which no page has beside it.
+void require_own_pixels(const Recipe& recipe, const std::string& name) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    const NamedImage* named = image_of(recipe.layers[i]);
+    if (named == nullptr || named->pixels != nullptr) continue;
+    throw InputError(name + ": layers[" + std::to_string(i) + "].image: " + named->image +
+                     " is a file beside the recipe, which this page cannot read; use synth");
+  }
+}
+
+MeshFileInfo info_of(const Recipe& recipe) {
+  MeshFileInfo info{recipe.length_unit, recipe.frame, "made by synth " + kCodeVersion.text()};
+  if (!(recipe.origin == Vec3d{})) info.origin = recipe.origin;
+  info.whole_body = true;
+  return info;
+}
+
+nlohmann::ordered_json figures_of(const BodyMeshReport& made, const Recipe& recipe,
+                                  const TriangleMesh& mesh) {
+  const ManifoldReport& report = made.manifold;
+  return {{"length_unit", recipe.length_unit},
+          {"vertices", report.vertices},
+          {"triangles", report.triangles},
+          {"closed", report.closed()},
+          {"genus", report.genus},
+          {"components", report.components},
+          {"evaluations", made.statistics.evaluations},
+          {"cell", made.statistics.step},
+          {"extent", json_of(mesh.bounds().extent())}};
+}
+
+std::vector<float> as_floats(const std::vector<Vec3d>& places) {
+  std::vector<float> floats;
+  floats.reserve(3 * places.size());
+  for (const Vec3d& p : places) {
+    for (const double x : {p.x, p.y, p.z}) floats.push_back(static_cast<float>(x));
+  }
+  return floats;
+}
+
+void make(std::string_view text, const std::string& name, int resolution) {
+  PageState& to = state();
+  to.mesh = {};
+  const Recipe recipe = parse_recipe(text, name);
+  require_own_pixels(recipe, name);
+  const std::filesystem::path file = name;
+  require_body(recipe, file);
+  const Region whole;
+  const ImplicitField field = field_of_region(recipe, file, whole, host_goes_on);
+  MeshCollector collector;
+  const BodyMeshReport made = make_body_mesh({recipe, field, file, whole, resolution}, collector,
+                                             [](const std::string&) { return host_goes_on; });
+  TriangleMesh& mesh = collector.mesh;
+  if (recipe.erosion) erode_body(*recipe.erosion, mesh, host_goes_on);
+  if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, field).colors_of({}, mesh);
+  to.figures = figures_of(made, recipe, mesh).dump();
+  to.info = info_of(recipe);
+  to.positions = as_floats(mesh.vertices);
+  to.normals = as_floats(mesh.normals);
+  to.mesh = std::move(mesh);
+}
+
+void keep_written(std::string bytes) {
+  state().sha256 = sha256_of(bytes);
+  state().written = std::move(bytes);
+}
+
+// The host has a file system in memory.
+std::string taken_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::filesystem::remove(file);
+  return bytes;
+}
+
+void write_made_mesh(const std::string& format) {
+  const std::filesystem::path file = "/tmp/body." + format;
+  write_mesh(state().mesh, file, state().info);
+  keep_written(taken_file(file));
+}
+
+void write_recipe_anew(std::string_view text, const std::string& name, const std::string& format) {
+  const Recipe recipe = parse_recipe(text, name);
+  keep_written(format == "astro" ? recipe_to_compact(recipe) : recipe_to_json(recipe));
+}
+
+}  // namespace
+}  // namespace astrolith
+
+using astrolith::state;
+
+int astrolith_make(const char* recipe, std::size_t bytes, const char* name, int resolution) {
+  return astrolith::status_of([&] { astrolith::make({recipe, bytes}, name, resolution); });
+}
+const char* astrolith_message() { return state().message.c_str(); }
+const char* astrolith_figures() { return state().figures.c_str(); }
+const float* astrolith_positions() { return state().positions.data(); }
+const float* astrolith_normals() { return state().normals.data(); }
+const std::uint8_t* astrolith_colors() {
+  return state().mesh.colors.empty() ? nullptr : state().mesh.colors.front().data();
+}
+const std::uint32_t* astrolith_triangles() {
+  return state().mesh.triangles.empty() ? nullptr : state().mesh.triangles.front().data();
+}
+std::size_t astrolith_vertex_count() { return state().mesh.vertices.size(); }
+std::size_t astrolith_triangle_count() { return state().mesh.triangles.size(); }
+
+int astrolith_write_mesh(const char* format) {
+  return astrolith::status_of([&] { astrolith::write_made_mesh(format); });
+}
+int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format) {
+  return astrolith::status_of([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
+}
+const char* astrolith_bytes() { return state().written.data(); }
+std::size_t astrolith_byte_count() { return state().written.size(); }
+const char* astrolith_sha256() { return state().sha256.c_str(); }
+
+const char* astrolith_version() {
+  static const std::string text = astrolith::kCodeVersion.text();
+  return text.c_str();
+}

@@ -1,0 +1,65 @@
+// The calls of the core (web/core/page_core.h) with the types of JavaScript. `module` is what makeAstrolithCore() gives.
+// A call that fails throws an Error whose `status` is that of synth: 1, the work failed, or 2, the recipe is wrong.
+function coreCalls(module) {
+  "use strict";
+  const textAt = pointer => module.UTF8ToString(pointer);
+
+  function withBytes(bytes, use) {
+    const pointer = module._malloc(bytes.length + 1);
+    try {
+      module.HEAPU8.set(bytes, pointer);
+      module.HEAPU8[pointer + bytes.length] = 0;
+      return use(pointer);
+    } finally {
+      module._free(pointer);
+    }
+  }
+  const withText = (text, use) => withBytes(new TextEncoder().encode(text), use);
+
+  function require(status) {
+    if (status === 0) return;
+    throw Object.assign(new Error(textAt(module._astrolith_message())), {status});
+  }
+
+  // A copy of `count` numbers: the memory moves when it grows.
+  function taken(Type, pointer, count) {
+    return pointer === 0 ? null : new Type(module.HEAPU8.buffer, pointer, count).slice();
+  }
+
+  function madeMesh() {
+    const vertices = module._astrolith_vertex_count(), triangles = module._astrolith_triangle_count();
+    return {
+      positions: taken(Float32Array, module._astrolith_positions(), 3 * vertices),
+      normals: taken(Float32Array, module._astrolith_normals(), 3 * vertices),
+      colors: taken(Uint8Array, module._astrolith_colors(), 3 * vertices),
+      triangles: taken(Uint32Array, module._astrolith_triangles(), 3 * triangles),
+      figures: JSON.parse(textAt(module._astrolith_figures())),
+    };
+  }
+
+  function written() {
+    return {
+      bytes: taken(Uint8Array, module._astrolith_bytes(), module._astrolith_byte_count()),
+      sha256: textAt(module._astrolith_sha256()),
+    };
+  }
+
+  return {
+    version: () => textAt(module._astrolith_version()),
+    // `recipe` is the bytes of a file, `name` its name in messages.
+    make(recipe, name, resolution) {
+      require(withBytes(recipe, r => withText(name, n => module._astrolith_make(r, recipe.length, n, resolution))));
+    },
+    mesh: madeMesh,
+    writeMesh(format) {
+      require(withText(format, f => module._astrolith_write_mesh(f)));
+      return written();
+    },
+    writeRecipe(recipe, name, format) {
+      require(withBytes(recipe, r => withText(name, n => withText(format,
+        f => module._astrolith_write_recipe(r, recipe.length, n, f)))));
+      return written();
+    },
+  };
+}
+if (typeof module === "object") module.exports = coreCalls;

@@ -1,0 +1,50 @@
+// The core as the page calls it: each call returns a promise, and the page never waits. A call cannot be interrupted where it
+// runs; stop() ends its worker, and the next call goes to one that is ready.
+class CoreClient {
+  // `script` is the text of the worker, `module` the compiled core.
+  constructor(script, module) {
+    this.url = URL.createObjectURL(new Blob([script], {type: "text/javascript"}));
+    this.module = module;
+    this.number = 0;
+    this.waiting = new Map();
+    this.onfraction = () => {};
+    this.worker = this.started();
+    this.spare = this.started();
+  }
+
+  started() {
+    const worker = new Worker(this.url);
+    worker.postMessage({module: this.module});
+    worker.onmessage = ({data}) => {
+      if (data.fraction !== undefined) return this.onfraction(data.fraction);
+      const {resolve, reject} = this.waiting.get(data.id);
+      this.waiting.delete(data.id);
+      if (data.error) reject(Object.assign(new Error(data.error.message), {status: data.error.status}));
+      else resolve(data.result);
+    };
+    worker.onerror = event => this.fail(new Error(event.message || "the core stopped"));
+    return worker;
+  }
+
+  call(call, ...args) {
+    const id = ++this.number;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, {resolve, reject});
+      this.worker.postMessage({id, call, args});
+    });
+  }
+
+  fail(error) {
+    const waiting = [...this.waiting.values()];
+    this.waiting.clear();
+    this.worker.terminate();
+    this.worker = this.spare;
+    this.spare = this.started();
+    waiting.forEach(({reject}) => reject(error));
+  }
+
+  // Ends what is going on; its promises are rejected with `stopped` set.
+  stop() {
+    if (this.waiting.size > 0) this.fail(Object.assign(new Error("stopped"), {stopped: true}));
+  }
+}

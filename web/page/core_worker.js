@@ -1,0 +1,41 @@
+// The core in a worker. A message {id, call, args} is answered by {id, result} or {id, error: {message, status}}, and while a
+// mesh is made by {fraction}. The first message brings the module: {module}.
+"use strict";
+let core;
+
+async function start(module) {
+  let told = 0;
+  const goesOn = fraction => {
+    const now = performance.now();
+    if (now - told > 100) postMessage({fraction});
+    if (now - told > 100) told = now;
+    return true;
+  };
+  const instantiateWasm = (imports, receive) => {
+    WebAssembly.instantiate(module, imports).then(receive);
+    return {};
+  };
+  core = makeAstrolithCore({instantiateWasm, goesOn}).then(coreCalls);
+}
+
+const calls = {
+  make(core, recipe, name, resolution) {
+    core.make(recipe, name, resolution);
+    return core.mesh();
+  },
+  writeMesh: (core, format) => core.writeMesh(format),
+  writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
+  version: core => core.version(),
+};
+
+const buffersOf = result => Object.values(result).filter(ArrayBuffer.isView).map(array => array.buffer);
+
+onmessage = async ({data}) => {
+  if (data.module) return start(data.module);
+  try {
+    const result = calls[data.call](await core, ...data.args);
+    postMessage({id: data.id, result}, typeof result === "object" ? buffersOf(result) : []);
+  } catch (error) {
+    postMessage({id: data.id, error: {message: error.message, status: error.status}});
+  }
+};

@@ -1,0 +1,84 @@
+// The recipe that is edited: its document, which layers are off, and what came before. A path is a list of keys, such as
+// ["layers", 0, "amplitude"]. Layers that are off stay in the list and are left out of the text.
+class EditedRecipe {
+  constructor(document, name) {
+    this.name = name;
+    this.document = document;
+    this.off = new Set();  // positions in the list of layers
+    this.before = [];
+    this.after = [];
+  }
+
+  get(path) {
+    return path.reduce((value, key) => value === undefined || value === null ? undefined : value[key], this.document);
+  }
+
+  // Sets a value, or removes it where the value is undefined. Changes of one `gesture` are undone together.
+  set(path, value, gesture) {
+    this.remember(gesture);
+    let holder = this.document;
+    for (const key of path.slice(0, -1)) holder = holder[key] === undefined ? (holder[key] = {}) : holder[key];
+    const last = path[path.length - 1];
+    if (value !== undefined) holder[last] = value;
+    else if (Array.isArray(holder)) holder.splice(last, 1);
+    else delete holder[last];
+    if (path.length === 2 && path[0] === "layers" && value === undefined) this.moveMarks(at => at === last ? -1 : at > last ? at - 1 : at);
+  }
+
+  // Moves an item of a list to the place before or after it.
+  move(path, step) {
+    const list = this.get(path.slice(0, -1)), from = path[path.length - 1], to = from + step;
+    if (to < 0 || to >= list.length) return false;
+    this.remember();
+    [list[from], list[to]] = [list[to], list[from]];
+    if (path.length === 2 && path[0] === "layers") this.moveMarks(at => at === from ? to : at === to ? from : at);
+    return true;
+  }
+
+  switchLayer(at, on) {
+    this.remember();
+    on ? this.off.delete(at) : this.off.add(at);
+  }
+
+  moveMarks(moved) {
+    this.off = new Set([...this.off].map(moved).filter(at => at >= 0));
+  }
+
+  // The text that the core reads.
+  text() {
+    if (this.off.size === 0) return recipeText.write(this.document) + "\n";
+    const layers = this.document.layers.filter((_, at) => !this.off.has(at));
+    return recipeText.write({...this.document, layers}) + "\n";
+  }
+
+  // The position in the document of a layer of the text.
+  layerOfText(at) {
+    const on = (this.document.layers || []).map((_, i) => i).filter(i => !this.off.has(i));
+    return on[at];
+  }
+
+  snapshot() { return JSON.stringify({document: this.document, off: [...this.off]}); }
+  restore(text) {
+    const {document, off} = JSON.parse(text);
+    this.document = document;
+    this.off = new Set(off);
+  }
+
+  remember(gesture) {
+    if (gesture !== undefined && gesture === this.gesture) return;
+    this.gesture = gesture;
+    this.before.push(this.snapshot());
+    if (this.before.length > 200) this.before.shift();
+    this.after = [];
+  }
+  step(from, to) {
+    if (from.length === 0) return false;
+    to.push(this.snapshot());
+    this.restore(from.pop());
+    this.gesture = undefined;
+    return true;
+  }
+  undo() { return this.step(this.before, this.after); }
+  redo() { return this.step(this.after, this.before); }
+}
+if (typeof module === "object") module.exports = EditedRecipe;

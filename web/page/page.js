@@ -1,0 +1,259 @@
+// The page: what its controls do. PAGE holds what the build takes into it: {worker, core, schema, examples}.
+(async function () {
+  "use strict";
+  const at = id => document.getElementById(id);
+  const COARSE = [12, 16, 24, 32, 48];  // cells of a mesh while something moves
+  const REST_MS = 250;                  // after which a finer mesh is made
+
+  const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
+  const encoded = text => new TextEncoder().encode(text);
+  const client = new CoreClient(PAGE.worker, await WebAssembly.compile(bytesOf(PAGE.core)));
+  PAGE.core = null;
+
+  let view = null;
+  try {
+    view = new BodyView(at("view"));
+  } catch (error) {
+    at("refusal").textContent = "This browser has no WebGL, so that nothing is drawn here; meshes can be saved all the same.";
+  }
+
+  let recipe = null, form = null, size = 1;
+  const values = schemaValues(PAGE.schema);
+  const editing = {
+    get: path => recipe.get(path),
+    set: (path, value, gesture) => recipe.set(path, value, gesture),
+    move: (path, step) => recipe.move(path, step),
+    endGesture: () => { recipe.gesture = undefined; },
+    lengthUnit: () => recipe.document.length_unit || "m",
+    size: () => size,
+    canSwitch: path => path.length === 2 && path[0] === "layers",
+    isOff: path => editing.canSwitch(path) && recipe.off.has(path[1]),
+    switchItem: (path, on) => recipe.switchLayer(path[1], on),
+    changed: () => changed(),
+  };
+  form = schemaForm(at("form"), values, editing);
+
+  // -- meshes: coarse ones while something moves, a finer one when it rests -----------------------------------------------
+
+  let wanted = false, drawing = null, coarse = 3, fine = false, shown = null;
+
+  function say(mesh, cells, milliseconds) {
+    const {triangles, extent, length_unit: unit, closed, components} = mesh.figures;
+    const sides = extent.map(x => Number(x.toPrecision(3))).join(" × ");
+    at("figures").textContent = `${triangles.toLocaleString("en")} triangles, ${closed ? "closed" : "open"}, ` +
+      `${components} ${components === 1 ? "piece" : "pieces"}, ${sides} ${unit}, ${cells} cells, ${(milliseconds / 1000).toFixed(2)} s`;
+  }
+
+  async function make(cells) {
+    const start = performance.now();
+    at("stop").disabled = false;
+    client.onfraction = fraction => { at("work").hidden = false; at("work").value = fraction; };
+    try {
+      const mesh = await client.call("make", encoded(recipe.text()), recipe.name, cells);
+      size = Math.max(...mesh.figures.extent);
+      mesh.milliseconds = performance.now() - start;
+      return mesh;
+    } finally {
+      at("work").hidden = true;
+      at("stop").disabled = true;
+    }
+  }
+
+  function show(mesh, cells) {
+    shown = {mesh, cells};
+    if (view) view.show(mesh);
+    say(mesh, cells, mesh.milliseconds);
+    at("refusal").textContent = "";
+    form.clear();
+  }
+
+  // The path that a message names, as keys; the layers are those of the text.
+  function pathIn(message) {
+    const rest = message.startsWith(recipe.name + ": ") ? message.slice(recipe.name.length + 2) : message;
+    const words = rest.slice(0, rest.indexOf(": "));
+    if (!/^[A-Za-z_][\w.[\]]*$/.test(words)) return [];
+    const path = [...words.matchAll(/[A-Za-z_]\w*|\[(\d+)\]/g)].map(([word, number]) => number === undefined ? word : Number(number));
+    if (path[0] === "layers" && path.length > 1) path[1] = recipe.layerOfText(path[1]);
+    return path;
+  }
+  function refuse(error) {
+    at("refusal").textContent = error.message;
+    const path = pathIn(error.message);
+    if (path.length > 0) form.refuse(path, error.message);
+  }
+
+  const rested = () => new Promise(done => setTimeout(done, REST_MS));
+  const finest = () => Number(at("resolution").value);
+
+  // One mesh of a change; true where nothing changed meanwhile.
+  async function drawOnce(cells) {
+    try {
+      const mesh = await make(cells);
+      show(mesh, cells);
+      if (cells === COARSE[coarse] && mesh.milliseconds > 200 && coarse > 0) --coarse;
+      if (cells === COARSE[coarse] && mesh.milliseconds < 40 && coarse + 1 < COARSE.length) ++coarse;
+      return !wanted;
+    } catch (error) {
+      if (!error.stopped && !wanted) refuse(error);
+      return false;
+    }
+  }
+
+  async function drawAll() {
+    while (wanted) {
+      wanted = false;
+      fine = false;
+      if (COARSE[coarse] < finest()) {
+        if (!await drawOnce(COARSE[coarse])) continue;
+        await rested();
+        if (wanted) continue;
+      }
+      fine = true;
+      await drawOnce(finest());
+    }
+  }
+
+  function draw() {
+    wanted = true;
+    if (drawing && fine) client.stop();
+    if (!drawing) drawing = drawAll().finally(() => { drawing = null; });
+    return drawing;
+  }
+  async function settled() {
+    while (drawing) await drawing;
+  }
+
+  function changed() {
+    at("undo").disabled = recipe.before.length === 0;
+    at("redo").disabled = recipe.after.length === 0;
+    at("like").hidden = !(recipe.document.layers || []).some(layer => layer.arrangement || layer.type === "relief");
+    return draw();
+  }
+
+  // -- recipes ------------------------------------------------------------------------------------------------------------
+
+  // Opens the bytes of a file. A recipe that the core refuses leaves the page as it is, but for the message.
+  async function openBytes(bytes, name) {
+    if (drawing) client.stop();
+    wanted = false;
+    await settled();
+    try {
+      const json = await client.call("writeRecipe", bytes, name, "json");
+      const compact = bytes[0] !== 0x7b && !/^\s*\{/.test(new TextDecoder().decode(bytes.slice(0, 64)));
+      const text = new TextDecoder().decode(compact ? json.bytes : bytes);
+      recipe = new EditedRecipe(recipeText.read(text), name.replace(/\.astro$/, ".json"));
+    } catch (error) {
+      at("refusal").textContent = error.message;
+      return false;
+    }
+    ["layers", "layers[0]"].forEach(form.open);
+    if (view) view.refit();
+    form.rebuild();
+    await changed();
+    return true;
+  }
+  const openText = (text, name) => openBytes(encoded(text), name);
+  const openFile = async file => openBytes(new Uint8Array(await file.arrayBuffer()), file.name);
+  const openExample = example => openText(example.text, example.name);
+
+  for (const example of PAGE.examples) at("examples").append(new Option(example.name.replace(/\.json$/, "").replace(/_/g, " "), example.name));
+  at("examples").onchange = () => openExample(PAGE.examples.find(example => example.name === at("examples").value));
+  at("file").onchange = () => at("file").files[0] && openFile(at("file").files[0]);
+  document.ondragover = event => { event.preventDefault(); document.body.classList.add("dropping"); };
+  document.ondragleave = () => document.body.classList.remove("dropping");
+  document.ondrop = event => {
+    event.preventDefault();
+    document.body.classList.remove("dropping");
+    if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+  };
+
+  function step(back) {
+    if (back ? recipe.undo() : recipe.redo()) {
+      form.rebuild();
+      changed();
+    }
+  }
+  at("undo").onclick = () => step(true);
+  at("redo").onclick = () => step(false);
+  document.onkeydown = event => {
+    const typing = /^(INPUT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== "range" && event.target.type !== "checkbox";
+    if (!(event.ctrlKey || event.metaKey) || typing) return;
+    if (event.key === "z" && !event.shiftKey) { event.preventDefault(); step(true); }
+    if (event.key === "y" || (event.key.toLowerCase() === "z" && event.shiftKey)) { event.preventDefault(); step(false); }
+  };
+
+  // Another body of the kind: what synth --like --seed does.
+  at("like").onclick = () => {
+    (recipe.document.layers || []).forEach((layer, i) => {
+      if (layer.type === "relief") recipe.set(["layers", i, "arrangement"], "like", "like");
+    });
+    recipe.set(["seed"], Math.floor(Math.random() * 2 ** 31), "like");
+    recipe.gesture = undefined;
+    form.rebuild();
+    changed();
+  };
+
+  // -- what is saved ------------------------------------------------------------------------------------------------------
+
+  function download(blob, name) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(blob);
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }
+
+  // The mesh of the finest resolution as a file: {bytes, sha256}.
+  async function meshFile(format) {
+    await settled();
+    if (!shown || shown.cells !== finest()) await make(finest()).then(mesh => show(mesh, finest()));
+    return client.call("writeMesh", format);
+  }
+  const recipeFile = format => client.call("writeRecipe", encoded(recipe.text()), recipe.name, format);
+
+  async function link() {
+    const {bytes} = await recipeFile("astro");
+    const code = btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+    return location.href.replace(/#.*/, "") + "#r=" + code;
+  }
+
+  async function save(kind) {
+    const stem = recipe.name.replace(/\.[^.]*$/, "");
+    if (kind === "json") return download(new Blob([recipe.text()], {type: "application/json"}), stem + ".json");
+    if (kind === "astro") return download(new Blob([(await recipeFile("astro")).bytes]), stem + ".astro");
+    if (kind === "png") return view && download(await view.picture(), stem + ".png");
+    if (kind !== "link") return download(new Blob([(await meshFile(kind)).bytes]), `${stem}.${kind}`);
+    history.replaceState(null, "", await link());
+    at("figures").textContent = "the address of this page now holds the recipe";
+    if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
+  }
+  at("saves").onclick = event => {
+    const kind = event.target.dataset.save;
+    if (kind) save(kind).catch(refuse);
+  };
+
+  // -- the rest -----------------------------------------------------------------------------------------------------------
+
+  at("stop").onclick = () => client.stop();
+  const tellCells = () => { at("cells").textContent = finest(); };
+  at("resolution").oninput = () => { tellCells(); draw(); };
+  for (const id of ["azimuth", "height"]) at(id).oninput = () => view && view.setSun(Number(at("azimuth").value), Number(at("height").value));
+  tellCells();
+  client.call("version").then(version => { at("version").textContent = `Astrolith ${version}.`; });
+
+  // For whoever drives the page by a script: tests, and other pages.
+  window.astrolith = {openText, settled, meshFile, recipeText: () => recipe.text(), link, setCells: cells => { at("resolution").value = cells; tellCells(); return draw(); }};
+
+  // The recipe of the link, that of the page, or the first example.
+  async function openFirst() {
+    const given = location.hash.match(/^#r=([\w-]+)$/);
+    if (given) return openBytes(bytesOf(given[1].replace(/-/g, "+").replace(/_/g, "/")), "link.astro");
+    const own = JSON.parse(at("recipe").textContent);
+    if (own) return openBytes(bytesOf(own.bytes), own.name);
+    at("examples").value = PAGE.first;
+    return openExample(PAGE.examples.find(example => example.name === PAGE.first));
+  }
+  window.onhashchange = openFirst;
+  await openFirst();
+  document.body.dataset.ready = "yes";
+})();

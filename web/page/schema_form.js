@@ -1,0 +1,340 @@
+// A form for a document, made of its JSON schema alone: a slider or a box for each field with its meaning, unit, limits and
+// default. `editing` is the document:
+//   get(path), set(path, value, gesture), move(path, step)
+//   lengthUnit(), size()       of the document's lengths
+//   changed()                  is called after each change by the user
+//   isOff(path), switchItem(path, on)   for lists whose items can be switched off, those of kinds
+function schemaForm(container, values, editing) {
+  "use strict";
+  const MOST_SHOWN = 12;
+  const open = new Set([""]);       // the groups that the user has open, by their paths
+  const shown = new Map();          // how many items of a long list are shown
+  const fields = new Map();         // the element of each path that is in the form
+
+  const pathText = path => path.reduce((text, key) => typeof key === "number" ? `${text}[${key}]` : text ? `${text}.${key}` : key, "");
+
+  function element(tag, {ariaLabel, ...properties}, ...children) {
+    const made = Object.assign(document.createElement(tag), properties);
+    if (ariaLabel) made.setAttribute("aria-label", ariaLabel);
+    made.append(...children.filter(child => child !== null && child !== undefined));
+    return made;
+  }
+  const button = (text, title, act) => element("button", {type: "button", textContent: text, title, ariaLabel: title, onclick: act});
+
+  function change(path, value, gesture) {
+    editing.set(path, value, gesture);
+    editing.changed();
+  }
+  // A change after which the form has other fields.
+  function reshape(act) {
+    act();
+    rebuild();
+    editing.changed();
+  }
+  const stop = act => event => { event.preventDefault(); reshape(act); };
+
+  // -- one value -------------------------------------------------------------------------------------------------------
+
+  function slider(path, node, value, take) {
+    const range = values.slide(node, value, editing.size());
+    if (!range) return null;
+    const at = v => range.log ? Math.log(v / range.low) / Math.log(range.high / range.low) : (v - range.low) / (range.high - range.low);
+    const from = t => range.log ? range.low * Math.pow(range.high / range.low, t) : range.low + t * (range.high - range.low);
+    const whole = node.type === "integer";
+    const steps = whole ? range.high - range.low : 400;
+    const made = element("input", {type: "range", min: 0, max: steps, step: 1, value: Math.round(at(value) * steps), ariaLabel: pathText(path)});
+    made.oninput = () => {
+      const v = from(made.value / steps);
+      take(whole ? Math.round(v) : Number(v.toPrecision(4)), "slide " + pathText(path));
+    };
+    made.onchange = () => editing.endGesture();
+    made.show = v => { made.value = Math.round(at(v) * steps); };
+    return made;
+  }
+
+  function numberField(path, node, value) {
+    const whole = node.type === "integer";
+    const box = element("input", {type: "text", inputMode: whole ? "numeric" : "decimal", value: recipeText.digits(value), ariaLabel: pathText(path), className: "number"});
+    const made = slider(path, node, Number(recipeText.digits(value)), (v, gesture) => {
+      box.value = v;
+      change(path, v, gesture);
+    });
+    box.onchange = () => {
+      const text = box.value.trim();
+      const v = whole ? recipeText.integer(text) : Number(text);
+      const good = text !== "" && (recipeText.isBig(v) || Number.isFinite(v));
+      box.setAttribute("aria-invalid", String(!good));
+      if (!good) return;
+      if (made) made.show(Number(text));
+      change(path, v);
+    };
+    return element("span", {className: "inputs"}, made, box);
+  }
+
+  function textField(path, value, take = text => text) {
+    const long = value.length > 60;
+    const box = element(long ? "textarea" : "input", {value, ariaLabel: pathText(path), spellcheck: false});
+    if (value.length > 4000) Object.assign(box, {readOnly: true, value: `${value.slice(0, 80)} … (${value.length} characters)`});
+    box.onchange = () => {
+      try {
+        change(path, take(box.value));
+        box.setAttribute("aria-invalid", "false");
+      } catch (error) {
+        box.setAttribute("aria-invalid", "true");
+      }
+    };
+    return box;
+  }
+
+  // Lists and maps of plain values as JSON text.
+  const jsonField = (path, value) => textField(path, recipeText.write(value).replace(/\n\s*/g, " "), recipeText.read);
+
+  function chooser(path, words, value, reshapes) {
+    const made = element("select", {ariaLabel: pathText(path)}, ...words.map(word => element("option", {value: word, textContent: word})));
+    made.value = value;
+    made.onchange = () => reshapes ? reshape(() => editing.set(path, made.value)) : change(path, made.value);
+    return made;
+  }
+
+  function switchField(path, value) {
+    return element("input", {type: "checkbox", checked: value, ariaLabel: pathText(path), onchange: event => change(path, event.target.checked)});
+  }
+
+  function rowField(path, node, value) {
+    return element("span", {className: "row"}, ...value.map((number, i) => {
+      const box = element("input", {type: "text", inputMode: "decimal", value: number, ariaLabel: `${pathText(path)}[${i}]`});
+      box.onchange = () => {
+        const v = Number(box.value);
+        if (box.value.trim() === "" || !Number.isFinite(v)) return box.setAttribute("aria-invalid", "true");
+        box.setAttribute("aria-invalid", "false");
+        // The whole row: it may stand for a default.
+        change(path, (editing.get(path) || value).map((old, k) => k === i ? v : old));
+      };
+      return box;
+    }));
+  }
+
+  const isRow = node => node.type === "array" && node.minItems === node.maxItems && values.resolved(node.items).type === "number" && node.maxItems <= 6;
+  const isGroup = node => (node.type === "object" && node.properties !== undefined);
+  const isList = node => node.type === "array" && !isRow(node) && (isGroup(values.resolved(node.items)) || isRow(values.resolved(node.items)) || values.kindsOf(node.items).length > 0);
+
+  function valueField(path, node, value) {
+    if (node.enum) return chooser(path, node.enum, value, path[path.length - 1] === "type");
+    if (node.type === "boolean") return switchField(path, value);
+    if (node.type === "string") return textField(path, String(value));
+    if (node.type === "number" || node.type === "integer") return numberField(path, node, value);
+    if (isRow(node) && Array.isArray(value)) return rowField(path, node, value);
+    return jsonField(path, value);
+  }
+
+  // -- a field with its words ------------------------------------------------------------------------------------------
+
+  function meaning(node) {
+    const words = [node.description, values.limits(node, editing.lengthUnit())].filter(Boolean).join(" · ");
+    return element("small", {textContent: words.replace(/`/g, "")});
+  }
+
+  function plainField(path, key, node, required) {
+    const given = editing.get(path), value = given !== undefined ? given : node.default;
+    const holder = element("div", {className: given === undefined ? "field unset" : "field"});
+    fields.set(pathText(path), holder);
+    const name = element("span", {className: "name", textContent: key});
+    if (value === undefined) {
+      holder.append(element("div", {className: "head"}, name, button("add", `add ${key}`, stop(() => editing.set(path, values.fresh(node))))), meaning(node));
+      return holder;
+    }
+    const back = required || given === undefined ? null : button("×", `back to what ${key} is without being stated`, stop(() => editing.set(path, undefined)));
+    holder.append(element("div", {className: "head"}, name, valueField(path, node, value), back), meaning(node));
+    return holder;
+  }
+
+  // A group that opens and closes; what is in it is made when it first opens.
+  function group(path, head, buttons, fill) {
+    const key = pathText(path);
+    const made = element("details", {className: "group", open: open.has(key)});
+    const body = element("div", {className: "body"});
+    fields.set(key, made);
+    made.append(element("summary", {}, head, element("span", {className: "buttons"}, ...buttons)), body);
+    let filled = false;
+    const fillOnce = () => {
+      if (filled) return;
+      filled = true;
+      fill(body);
+    };
+    if (made.open) fillOnce();
+    made.fillNow = () => { open.add(key); made.open = true; fillOnce(); };
+    made.ontoggle = () => {
+      made.open ? open.add(key) : open.delete(key);
+      if (made.open) fillOnce();
+    };
+    return made;
+  }
+
+  function objectField(path, key, node, required) {
+    const value = editing.get(path);
+    if (value === undefined) {
+      const holder = element("div", {className: "field unset"});
+      fields.set(pathText(path), holder);
+      holder.append(element("div", {className: "head"}, element("span", {className: "name", textContent: key}),
+        button("add", `add ${key}`, stop(() => { editing.set(path, values.fresh(node)); open.add(pathText(path)); }))), meaning(node));
+      return holder;
+    }
+    const remove = required ? [] : [button("×", `remove ${key}`, stop(() => editing.set(path, undefined)))];
+    return group(path, key, remove, body => {
+      body.append(meaning(node), ...objectFields(path, node));
+    });
+  }
+
+  // All fields but those that allow one value only.
+  function objectFields(path, node) {
+    const required = node.required || [];
+    const resolved = Object.keys(node.properties).map(key => [key, values.resolved(node.properties[key])]);
+    return resolved.filter(([, child]) => child.minimum === undefined || child.minimum !== child.maximum)
+      .map(([key, child]) => field([...path, key], key, child, required.includes(key)));
+  }
+
+  function field(path, key, node, required) {
+    if (isGroup(node)) return objectField(path, key, node, required);
+    if (isList(node)) return listField(path, key, node);
+    return plainField(path, key, node, required);
+  }
+
+  // -- lists -----------------------------------------------------------------------------------------------------------
+
+  function itemButtons(path, count) {
+    const at = path[path.length - 1];
+    const moved = step => stop(() => { if (editing.move(path, step)) swapOpen(path, step); });
+    return [
+      at > 0 ? button("↑", "move up", moved(-1)) : null,
+      at + 1 < count ? button("↓", "move down", moved(1)) : null,
+      button("×", "remove", stop(() => { closeFrom(path); editing.set(path, undefined); })),
+    ];
+  }
+
+  // Groups stay open with the item that moves.
+  function swapOpen(path, step) {
+    const here = pathText(path), there = pathText([...path.slice(0, -1), path[path.length - 1] + step]);
+    const moved = [...open].map(key =>
+      key.startsWith(here) ? there + key.slice(here.length) : key.startsWith(there) ? here + key.slice(there.length) : key);
+    open.clear();
+    moved.forEach(key => open.add(key));
+  }
+  function closeFrom(path) {
+    const list = pathText(path.slice(0, -1)) + "[";
+    [...open].filter(key => key.startsWith(list)).forEach(key => open.delete(key));
+  }
+
+  function itemTitle(value, at) {
+    const words = [value.type, value.name].filter(Boolean).join(" · ");
+    return `${at + 1}  ${words}`;
+  }
+
+  function kindItem(path, kinds, value, count) {
+    const kind = kinds.find(k => values.wordsOf(k).includes(value.type));
+    const on = element("input", {type: "checkbox", checked: !editing.isOff(path), title: "on or off", ariaLabel: `${pathText(path)} on`});
+    on.onclick = event => event.stopPropagation();
+    on.onchange = () => { editing.switchItem(path, on.checked); editing.changed(); };
+    const head = element("span", {}, editing.canSwitch(path) ? on : null, " " + itemTitle(value, path[path.length - 1]));
+    return group(path, head, itemButtons(path, count), body => {
+      if (kind) body.append(...objectFields(path, kind));
+      else body.append(jsonField(path, value));
+    });
+  }
+
+  function rowItem(path, node, value, count) {
+    const holder = element("div", {className: "field"}, element("div", {className: "head"}, element("span", {className: "name", textContent: path[path.length - 1] + 1}), rowField(path, node, value), ...itemButtons(path, count)));
+    fields.set(pathText(path), holder);
+    return holder;
+  }
+
+  function listItem(path, items, value, count) {
+    const kinds = values.kindsOf(items), node = values.resolved(items);
+    if (kinds.length > 0) return kindItem(path, kinds, value, count);
+    if (isRow(node)) return rowItem(path, node, value, count);
+    return group(path, itemTitle(value, path[path.length - 1]), itemButtons(path, count), body => body.append(...objectFields(path, node)));
+  }
+
+  // What makes a new item: a button, or a choice among the kinds.
+  function adder(path, items) {
+    const kinds = values.kindsOf(items);
+    const add = value => {
+      const list = editing.get(path) || [];
+      const at = [...path, list.length];
+      if (editing.get(path) === undefined) editing.set(path, []);
+      editing.set(at, value);
+      open.add(pathText(path));
+      open.add(pathText(at));
+      shown.set(pathText(path), Math.max(shown.get(pathText(path)) || 0, list.length + 1));
+    };
+    if (kinds.length === 0) return button("add", `add to ${pathText(path)}`, stop(() => add(values.fresh(items))));
+    const words = kinds.flatMap(values.wordsOf);
+    const choice = element("select", {ariaLabel: `add to ${pathText(path)}`, className: "adder"},
+      element("option", {value: "", textContent: "add …"}), ...words.map(word => element("option", {value: word, textContent: word})));
+    choice.onclick = event => event.stopPropagation();
+    choice.onchange = () => {
+      const kind = kinds.find(k => values.wordsOf(k).includes(choice.value));
+      reshape(() => add({...values.fresh(kind), ...risen(kind), type: choice.value}));
+    };
+    return choice;
+  }
+
+  // A new kind of relief that is 0 high would show nothing: its first height becomes a fiftieth of the body.
+  function risen(kind) {
+    const key = Object.keys(kind.properties).find(name => {
+      const node = values.resolved(kind.properties[name]);
+      return node.type === "number" && node.unit === "length" && node.default === 0 && /height/.test(node.description);
+    });
+    return key ? {[key]: Number((0.02 * editing.size()).toPrecision(2))} : {};
+  }
+
+  function listField(path, key, node) {
+    const list = editing.get(path) || [];
+    const text = pathText(path);
+    return group(path, `${key} (${list.length})`, [adder(path, node.items)], body => {
+      const most = Math.max(shown.get(text) || MOST_SHOWN, MOST_SHOWN);
+      body.append(meaning(node), ...list.slice(0, most).map((value, at) => listItem([...path, at], node.items, value, list.length)));
+      if (list.length > most) {
+        body.append(button(`${list.length - most} more`, `more of ${text}`, () => { shown.set(text, most + 100); rebuild(); }));
+      }
+    });
+  }
+
+  // -- the whole -------------------------------------------------------------------------------------------------------
+
+  function rebuild() {
+    const focus = document.activeElement && document.activeElement.getAttribute("aria-label");
+    fields.clear();
+    // What the body is made of comes first, and what is said about it last.
+    const all = objectFields([], values.resolved(values.schema)), parts = all.filter(made => made.tagName === "DETAILS");
+    container.replaceChildren(...parts, ...all.filter(made => !parts.includes(made)));
+    if (!focus) return;
+    const again = [...container.querySelectorAll("[aria-label]")].find(made => made.getAttribute("aria-label") === focus);
+    if (again) again.focus({preventScroll: true});
+  }
+
+  function clear() {
+    container.querySelectorAll(".refusal").forEach(made => made.remove());
+    container.querySelectorAll(".refused").forEach(made => made.classList.remove("refused"));
+  }
+
+  // Opens the groups around a path and shows the words beside its field, or beside the nearest that the form has.
+  function refuse(path, words) {
+    clear();
+    for (let depth = 1; depth <= path.length; ++depth) {
+      const around = fields.get(pathText(path.slice(0, depth)));
+      if (around && around.fillNow && depth < path.length) around.fillNow();
+    }
+    for (let depth = path.length; depth > 0; --depth) {
+      const made = fields.get(pathText(path.slice(0, depth)));
+      if (!made) continue;
+      made.classList.add("refused");
+      const note = element("div", {className: "refusal", textContent: words});
+      note.setAttribute("role", "alert");
+      made.append(note);
+      return true;
+    }
+    return false;
+  }
+
+  return {rebuild, refuse, clear, open: path => open.add(path)};
+}

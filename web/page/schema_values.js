@@ -1,0 +1,74 @@
+// What a JSON schema says of a value: its meaning, limits, what a new one is like. Knows no recipe.
+function schemaValues(schema) {
+  "use strict";
+  const FAR = 1e6;  // limits beyond it say nothing of what is usual
+
+  // The node with what it refers to; what stands beside the reference wins.
+  function resolved(node) {
+    while (node && node.$ref) {
+      const {$ref, ...beside} = node;
+      node = {...$ref.slice(2).split("/").reduce((at, key) => at[key], schema), ...beside};
+    }
+    return node;
+  }
+
+  // The kinds that an item may be, each with a field `type`; empty where there is but one.
+  function kindsOf(items) {
+    return (resolved(items).oneOf || []).map(resolved).filter(kind => kind.properties && kind.properties.type);
+  }
+  const wordsOf = kind => resolved(kind.properties.type).enum;
+  const kindOf = (items, value) => kindsOf(items).find(kind => wordsOf(kind).includes(value && value.type));
+
+  function newNumber(node) {
+    const least = node.exclusiveMinimum !== undefined ? node.exclusiveMinimum : node.minimum;
+    const most = node.maximum;
+    if (least === undefined || (least <= 1 && (most === undefined || most >= 1) && least !== node.exclusiveMinimum)) {
+      return least === 0 && most === 1 ? 0.5 : 1;
+    }
+    return Math.max(least, 1) === node.exclusiveMinimum ? least + 1 : Math.max(least, 1);
+  }
+
+  // A value that the schema allows, with the fields that it requires.
+  function fresh(given) {
+    const node = resolved(given);
+    if (node.default !== undefined) return JSON.parse(JSON.stringify(node.default));
+    if (node.enum) return node.enum[0];
+    const type = node.type;
+    if (type === "boolean") return false;
+    if (type === "string") return "";
+    if (type === "number" || type === "integer") return newNumber(node);
+    if (type === "array") return Array.from({length: node.minItems || 0}, () => fresh(node.items));
+    if (!node.properties && node.oneOf) return fresh(node.oneOf[0]);
+    const value = {};
+    const oneOf = node.oneOf && node.oneOf[0].required || [];
+    for (const key of [...(node.required || []), ...oneOf]) value[key] = fresh(node.properties[key]);
+    return value;
+  }
+
+  // From where to where a slider for the value goes; null where a slider says nothing. A logarithmic one has `log`.
+  function slide(node, value, size) {
+    const low = node.exclusiveMinimum !== undefined ? node.exclusiveMinimum : node.minimum, high = node.maximum;
+    const near = limit => limit !== undefined && Math.abs(limit) <= FAR;
+    if (near(low) && near(high) && (low !== 0 || high <= 1000)) return {low, high};
+    if (node.type === "integer") return null;
+    const usual = Math.abs(value) || Math.abs(node.default) || (node.unit === "length" ? 0.05 * size : 1);
+    if (low > 0 && low < 1e-3) return {low: usual / 32, high: usual * 32, log: true};
+    if (near(low)) return {low, high: low + 4 * Math.max(usual - low, 0.25 * usual)};
+    return {low: -4 * usual, high: 4 * usual};
+  }
+
+  // The unit and the limits in words.
+  function limits(node, lengthUnit) {
+    const words = [];
+    if (node.unit) words.push(node.unit.replace(/\blength\b/, lengthUnit));
+    const low = node.exclusiveMinimum !== undefined ? node.exclusiveMinimum : node.minimum;
+    if (low !== undefined && low > -FAR && !(low > 0 && low < 1e-6)) words.push((node.exclusiveMinimum !== undefined ? "> " : "≥ ") + low);
+    if (low > 0 && low < 1e-6) words.push("> 0");
+    if (node.maximum !== undefined && node.maximum < FAR) words.push("≤ " + node.maximum);
+    if (node.default !== undefined && typeof node.default !== "object" && node.default !== "") words.push("default " + node.default);
+    return words.join(", ");
+  }
+
+  return {schema, resolved, kindsOf, kindOf, wordsOf, fresh, slide, limits};
+}
+if (typeof module === "object") module.exports = schemaValues;
