@@ -7,6 +7,7 @@
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/reported_loop.h"
+#include "numerics/split_at_rank.h"
 
 namespace astrolith {
 namespace {
@@ -43,7 +44,7 @@ class Splitter {
     Box box;
     for (std::uint32_t i = 0; i < count; ++i) box.extend(begin[i][0] + begin[i][1] + begin[i][2]);
     double Vec3d::*const axis = longest_axis(box.extent());
-    std::nth_element(begin, begin + half, begin + count, [axis](const Corners& a, const Corners& b) {
+    split_at_rank(begin, begin + half, begin + count, [axis](const Corners& a, const Corners& b) {
       return a[0].*axis + a[1].*axis + a[2].*axis < b[0].*axis + b[1].*axis + b[2].*axis;
     });
   }

@@ -11,6 +11,7 @@
 #include "numerics/host_device.h"
 #include "numerics/portable_double.h"
 #include "numerics/reported_loop.h"
+#include "numerics/split_at_rank.h"
 
 namespace astrolith {
 namespace {
@@ -37,11 +38,10 @@ void order_targets(std::span<Target> targets) {
   double Vec3d::*const axis = longest_axis(box.extent());
   const std::size_t batches = (targets.size() + kPointBatch - 1) / kPointBatch,
                     half = batches / 2 * kPointBatch;
-  std::nth_element(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(half), targets.end(),
-                   [axis](const Target& a, const Target& b) {
-                     return a.point.*axis != b.point.*axis ? a.point.*axis < b.point.*axis
-                                                           : a.place < b.place;
-                   });
+  split_at_rank(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(half), targets.end(),
+                [axis](const Target& a, const Target& b) {
+                  return a.point.*axis != b.point.*axis ? a.point.*axis < b.point.*axis : a.place < b.place;
+                });
   order_targets(targets.first(half));
   order_targets(targets.subspan(half));
 }

@@ -57,6 +57,7 @@ slice_4() {
 slice_5() {
   check "benchmarks and notebooks" "scripts/build.sh ci -DASTROLITH_BENCHMARKS=ON $python
     ASTROLITH_BIN=\$PWD/build/ci/bin ASTROLITH_BUILD=\$PWD/build/ci scripts/notebooks.sh --jobs 2"
+  check "the page" "scripts/setup.sh --browser && scripts/web.sh test build/ci/bin/synth"
   check fuzzers "scripts/setup.sh --fuzz && scripts/build.sh fuzz -DASTROLITH_CUDA=OFF fuzzers"
 }
 

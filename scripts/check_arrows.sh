@@ -58,6 +58,7 @@ tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/s
 tasks/synth                -> numerics recipe geometry gravity synthesis cuda tasks/job tasks/gravity tasks/synthesis tasks/prediction
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
+web/core                   -> numerics recipe geometry gravity synthesis tasks/synthesis
 python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }

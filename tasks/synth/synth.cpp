@@ -23,6 +23,7 @@
 #include "tasks/synth/synth_levels.h"
 #include "tasks/synth/synth_members.h"
 #include "tasks/synth/synth_mesh.h"
+#include "tasks/synth/synth_page.h"
 #include "tasks/synth/synth_texture.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -46,6 +47,7 @@ struct SynthOptions {
   std::string count;  // of bodies, an option that --members replaces
   int finer = 0;      // levels of reliefs below their models
   double vary = 0.0;  // 0 = the recipe itself
+  fs::path page;      // the folder of a page; empty = none
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
 
@@ -58,7 +60,7 @@ void declare_options(Job& job, SynthOptions& options) {
           "-o,--output", options.body.output,
           "the mesh: " + written_mesh_words() +
               ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
-              "--write-recipe is given")
+              "--write-recipe or --page is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
         return options.texture.size.empty() ? level_files(words.front(), options.body.mesh.levels)
@@ -116,6 +118,13 @@ void declare_options(Job& job, SynthOptions& options) {
                   "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json")
       .writes(recipe_and_relief);
+  job.options
+      .add_option(
+          "--page", options.page,
+          "also a page, index.html, on which a browser makes the body of the recipe that is made, and "
+          "changes it; without -o nothing else. Needs the page's file (scripts/web.sh install)")
+      .placeholder("DIR")
+      .writes([](const auto& words) { return page_files(words.front()); });
   declare_texture_options(job, options.texture);
   declare_members_options(job, options.members);
   // A texture has its own options; all others are of the mesh.
@@ -126,7 +135,7 @@ void declare_options(Job& job, SynthOptions& options) {
     if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
-  for (const char* of_one : {"--texture", "--tile", "--lod"}) {
+  for (const char* of_one : {"--texture", "--tile", "--lod", "--page"}) {
     job.options.option("--members").excludes(job.options.option(of_one));
   }
   job.options.option("--seed")
@@ -226,7 +235,8 @@ void check_outputs(const Job& job, const SynthOptions& options) {
   } else if (!options.body.output.empty()) {
     require_extension(options.body.output, {".png", ".tif", ".tiff"});
   }
-  if (!options.body.output.empty() || !options.body.recipe.empty() || options.body.mesh.size.only_predict)
+  if (!options.body.output.empty() || !options.body.recipe.empty() || !options.page.empty() ||
+      options.body.mesh.size.only_predict)
     return;
   throw InputError("--output: is required; name the file to make, such as -o body.ply");
 }
@@ -268,7 +278,9 @@ void synthesize(Job& job, const SynthOptions& options) {
     return work(job, options.members, body, {whole, file, draw});
   }
   const Recipe made = is_varied ? variation(recipe, job.seed) : whole;
+  if (!options.page.empty()) check_page(made, options.recipe);
   if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
+  if (!options.page.empty()) write_page(made, options.recipe, options.page);
   if (body.output.empty() && !body.mesh.size.only_predict) return;
   make_mesh(job, body.mesh, made, file, body.output);
 }

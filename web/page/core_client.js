@@ -9,8 +9,9 @@ class CoreClient {
     this.waiting = new Map();
     this.onfraction = () => {};
     this.worker = this.started();
-    this.spare = this.started();
+    this.spare = null;
   }
+  prepareSpare() { this.spare = this.spare || this.started(); }
 
   started() {
     const worker = new Worker(this.url);
@@ -38,7 +39,7 @@ class CoreClient {
     const waiting = [...this.waiting.values()];
     this.waiting.clear();
     this.worker.terminate();
-    this.worker = this.spare;
+    this.worker = this.spare || this.started();
     this.spare = this.started();
     waiting.forEach(({reject}) => reject(error));
   }

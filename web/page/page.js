@@ -62,6 +62,7 @@
   function show(mesh, cells) {
     shown = {mesh, cells};
     if (view) view.show(mesh);
+    performance.mark("picture", {detail: cells});
     say(mesh, cells, mesh.milliseconds);
     at("refusal").textContent = "";
     form.clear();
@@ -132,16 +133,26 @@
 
   // -- recipes ------------------------------------------------------------------------------------------------------------
 
-  // Opens the bytes of a file. A recipe that the core refuses leaves the page as it is, but for the message.
+  // The document in the bytes of a file. What is no JSON the core reads: a compact recipe, or what it has words for.
+  async function documentOf(bytes, name) {
+    const text = new TextDecoder().decode(bytes);
+    try {
+      const document = recipeText.read(text);
+      if (document && typeof document === "object" && !Array.isArray(document)) return document;
+    } catch (error) {
+      if (!(error instanceof SyntaxError)) throw error;
+    }
+    const json = await client.call("writeRecipe", bytes, name, "json");
+    return recipeText.read(new TextDecoder().decode(json.bytes));
+  }
+
+  // Opens the bytes of a file. One that holds no document leaves the page as it is, but for the message.
   async function openBytes(bytes, name) {
-    if (drawing) client.stop();
     wanted = false;
+    if (drawing) client.stop();
     await settled();
     try {
-      const json = await client.call("writeRecipe", bytes, name, "json");
-      const compact = bytes[0] !== 0x7b && !/^\s*\{/.test(new TextDecoder().decode(bytes.slice(0, 64)));
-      const text = new TextDecoder().decode(compact ? json.bytes : bytes);
-      recipe = new EditedRecipe(recipeText.read(text), name.replace(/\.astro$/, ".json"));
+      recipe = new EditedRecipe(await documentOf(bytes, name), name.replace(/\.astro$/, ".json"));
     } catch (error) {
       at("refusal").textContent = error.message;
       return false;
@@ -255,5 +266,6 @@
   }
   window.onhashchange = openFirst;
   await openFirst();
+  client.prepareSpare();
   document.body.dataset.ready = "yes";
 })();

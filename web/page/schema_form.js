@@ -185,11 +185,13 @@ function schemaForm(container, values, editing) {
     });
   }
 
-  // All fields but those that allow one value only.
+  // All fields but those that allow one value only. What has a value or a default comes first.
   function objectFields(path, node) {
     const required = node.required || [];
-    const resolved = Object.keys(node.properties).map(key => [key, values.resolved(node.properties[key])]);
-    return resolved.filter(([, child]) => child.minimum === undefined || child.minimum !== child.maximum)
+    const all = Object.keys(node.properties).map(key => [key, values.resolved(node.properties[key])])
+      .filter(([, child]) => child.minimum === undefined || child.minimum !== child.maximum);
+    const has = ([key, child]) => editing.get([...path, key]) !== undefined || child.default !== undefined;
+    return [...all.filter(has), ...all.filter(pair => !has(pair))]
       .map(([key, child]) => field([...path, key], key, child, required.includes(key)));
   }
 
