@@ -131,6 +131,20 @@ void declare(OptionRow& row, CLI::App& parser) {
   option->required(row.required);
 }
 
+// The words of a command line, the last first, as CLI11 takes them. An option that stands without a value gets
+// the one that it means.
+std::vector<std::string> words_of(const OptionTable& options, int argc, char** argv) {
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    const OptionRow* const row = word.starts_with("--") ? options.find(word) : nullptr;
+    if (row != nullptr && !row->implied.empty() && (words.empty() || !row->takes(words.back())))
+      word += "=" + row->implied;
+    words.push_back(std::move(word));
+  }
+  return words;
+}
+
 void declare(OptionTable& options, CLI::App& parser) {
   for (const auto& row : options.rows()) declare(*row, parser);
   for (const OptionTable::Command& command : options.commands()) {
@@ -170,7 +184,8 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     return 2;
   };
   try {
-    parser.parse(argc, argv);
+    std::vector<std::string> words = words_of(options, argc, argv);
+    parser.parse(words);
     options.check_combination();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return parser.exit(e);  // --help, --version

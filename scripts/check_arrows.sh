@@ -11,7 +11,8 @@ numerics/version           -> numerics
 recipe                     -> numerics recipe/compact
 recipe/compact             -> numerics
 geometry                   -> numerics geometry/.
-geometry/io                -> numerics geometry/.
+geometry/atlas             -> numerics geometry/.
+geometry/io                -> numerics geometry/. geometry/atlas
 geometry/points            -> numerics
 geometry/surface           -> numerics geometry/. geometry/points
 gravity                    -> numerics geometry

@@ -91,7 +91,7 @@ void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, cons
 void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
-void write_glb_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
+void write_glb_levels(std::span<const MeshLevel> levels, std::span<const double> coverage,
                       const std::filesystem::path& file, const MeshFileInfo& info);
 // The two formats of plates have no place for comments. write_icq throws InputError for a body that has
 // several surfaces along a direction from its centre of mass.

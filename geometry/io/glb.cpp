@@ -1,17 +1,14 @@
 // glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one chunk of JSON and one chunk of numbers.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <optional>
 #include <span>
-#include <unordered_map>
+#include <string>
+#include <vector>
 
 #include "geometry/io/format_internal.h"
 #include "numerics/length_unit.h"
-#include "numerics/portable_angles.h"
 #include "numerics/srgb.h"
 
 namespace astrolith {
@@ -30,76 +27,42 @@ std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
   return {to_float(box.min), to_float(box.max)};
 }
 
-// A mesh whose vertices have texture coordinates. A triangle that crosses the 180th meridian would run
-// backwards over the whole map. Its western vertices are therefore there twice: the second has u + 1, and
-// maps repeat in u.
-struct LongitudeLatitude {
-  std::vector<std::uint32_t> doubled;  // (d) the vertices that are there twice, in the order of their seconds
-  std::vector<std::array<float, 2>>
-      texcoords;                    // (#V + d) u = 1/2 + longitude / 360 deg, v = 1/2 - latitude / 180 deg
-  std::vector<Triangle> triangles;  // (#F) index #V + k is the second of doubled[k]
-};
-
-std::array<float, 2> texcoord_of(const Vec3d& place) {
-  const double longitude = portable::atan2(place.y, place.x);
-  const double latitude = portable::atan2(place.z, std::sqrt(place.x * place.x + place.y * place.y));
-  return {static_cast<float>(0.5 + longitude / (2.0 * std::numbers::pi)),
-          static_cast<float>(0.5 - latitude / std::numbers::pi)};
+// The vertices that a level stores: with a skin, its textured vertices.
+std::uint64_t num_stored(const MeshLevel& level) {
+  return level.skin ? level.skin->coordinates.uv.size() : level.mesh->vertices.size();
 }
 
-// Longitudes run east from +x about z, latitudes from the xy plane towards +z, both seen from the origin of
-// the frame, which lies at -`origin` in the mesh's coordinates. The triangles at the two poles are distorted,
-// as in every such map.
-LongitudeLatitude longitude_latitude(const TriangleMesh& mesh, const Vec3d& origin) {
-  LongitudeLatitude result;
-  result.texcoords.reserve(mesh.vertices.size());
-  for (const Vec3d& v : mesh.vertices) result.texcoords.push_back(texcoord_of(v + origin));
-  std::unordered_map<std::uint32_t, std::uint32_t> second;
-  const auto second_of = [&](std::uint32_t vertex) {
-    const auto [found, is_new] =
-        second.try_emplace(vertex, static_cast<std::uint32_t>(result.texcoords.size()));
-    if (is_new) {
-      result.doubled.push_back(vertex);
-      result.texcoords.push_back({result.texcoords[vertex][0] + 1.0f, result.texcoords[vertex][1]});
-    }
-    return found->second;
-  };
-  result.triangles = mesh.triangles;
-  for (Triangle& triangle : result.triangles) {
-    const auto u = [&](int corner) {
-      return result.texcoords[triangle[static_cast<std::size_t>(corner)]][0];
-    };
-    const auto [west, east] = std::minmax({u(0), u(1), u(2)});
-    if (east - west <= 0.5f) continue;
-    for (std::uint32_t& vertex : triangle) {
-      if (result.texcoords[vertex][0] < 0.5f) vertex = second_of(vertex);
-    }
-  }
-  return result;
+const std::vector<Triangle>& stored_triangles(const MeshLevel& level) {
+  return level.skin ? level.skin->coordinates.triangles : level.mesh->triangles;
 }
 
-// A mesh of the file, as it is stored.
-struct StoredMesh {
-  const TriangleMesh& mesh;
-  std::optional<LongitudeLatitude> map;
+bool has_tangents(const MeshLevel& level) { return level.skin && !level.skin->tangents.empty(); }
 
-  // Vertices that are there twice count twice.
-  std::uint64_t num_vertices() const { return map ? map->texcoords.size() : mesh.vertices.size(); }
-};
+// A map of colours takes the place of the colours of vertices, which would multiply it.
+bool has_vertex_colors(const MeshLevel& level) {
+  const auto is_color = [](const SkinMap& map) { return map.use == SkinMap::Use::kBaseColor; };
+  return !level.mesh->colors.empty() &&
+         !(level.skin && std::any_of(level.skin->maps.begin(), level.skin->maps.end(), is_color));
+}
+
+std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
 class GlbDocument {
  public:
-  GlbDocument(std::span<const StoredMesh> levels, std::span<const double> coverage,
+  GlbDocument(std::span<const MeshLevel> levels, std::span<const double> coverage,
               const MeshFileInfo& info) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
     document_["nodes"] = Json::array();
-    document_["materials"] = Json::array({material(levels.front().mesh)});
-    for (const StoredMesh& level : levels) {
-      document_["nodes"].push_back(node(info, document_["nodes"].size()));
-      add_arrays(level);
+    document_["materials"] = Json::array();
+    for (const MeshLevel& level : levels) {
+      const std::size_t number = document_["nodes"].size();
+      document_["nodes"].push_back(node(info, number));
+      if (number == 0 || has_maps(level)) add_material(level, number);
+      add_arrays(level, number);
     }
+    for (const MeshLevel& level : levels) add_images(level);
     if (levels.size() > 1) name_levels(levels.size(), coverage);
     document_["buffers"] = Json::array({{{"byteLength", num_bytes_}}});
   }
@@ -118,8 +81,7 @@ class GlbDocument {
   static Json node(const MeshFileInfo& info, std::size_t level) {
     constexpr double kHalf = 0.70710678118654757;
     const double scale = metres_of(info.length_unit);
-    const std::string name = level == 0 ? "body" : "body_lod" + std::to_string(level);
-    Json result = {{"mesh", level}, {"name", name}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
+    Json result = {{"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
     result["scale"] = {scale, scale, scale};
     return result;
   }
@@ -135,19 +97,62 @@ class GlbDocument {
     first["extras"] = {{"MSFT_screencoverage", coverage}};
   }
 
-  // A material without shine; the default of glTF is fully metallic. Its colour multiplies those of the
-  // vertices.
-  static Json material(const TriangleMesh& mesh) {
-    const double base = mesh.colors.empty() ? 0.5 : 1.0;
-    return {
-        {"name", "regolith"},
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {base, base, base, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
+  static std::string level_name(const std::string& name, std::size_t level) {
+    return level == 0 ? name : name + "_lod" + std::to_string(level);
   }
 
-  void add_arrays(const StoredMesh& level) {
-    const TriangleMesh& mesh = level.mesh;
-    const std::uint64_t vertices = level.num_vertices();
+  static bool has_maps(const MeshLevel& level) { return level.skin && !level.skin->maps.empty(); }
+
+  // A material without shine; the default of glTF is fully metallic. Its colour multiplies those of the
+  // vertices and of its map.
+  void add_material(const MeshLevel& level, std::size_t number) {
+    Json surface = {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
+    Json material = {{"name", level_name("regolith", number)}};
+    bool is_colored = !level.mesh->colors.empty();
+    if (has_maps(level)) {
+      for (const SkinMap& map : level.skin->maps) {
+        const Json texture = {{"index", add_texture(map, level.skin->repeats)}};
+        if (map.use == SkinMap::Use::kBaseColor) surface["baseColorTexture"] = texture, is_colored = true;
+        if (map.use == SkinMap::Use::kNormal) material["normalTexture"] = texture;
+        if (map.use == SkinMap::Use::kOcclusion) material["occlusionTexture"] = texture;
+      }
+    }
+    const double base = is_colored ? 1.0 : 0.5;
+    surface["baseColorFactor"] = {base, base, base, 1.0};
+    material["pbrMetallicRoughness"] = std::move(surface);
+    document_["materials"].push_back(std::move(material));
+  }
+
+  // Names a texture and its image, whose bytes follow the arrays. Returns the number of the texture.
+  std::size_t add_texture(const SkinMap& map, bool repeats) {
+    constexpr int kRepeat = 10497, kClamp = 33071, kLinear = 9729, kLinearMipmaps = 9987;
+    if (!document_.contains("textures")) {
+      document_["samplers"] = Json::array({{{"magFilter", kLinear},
+                                            {"minFilter", kLinearMipmaps},
+                                            {"wrapS", repeats ? kRepeat : kClamp},
+                                            {"wrapT", kClamp}}});
+      document_["textures"] = Json::array();
+      document_["images"] = Json::array();
+    }
+    const std::size_t number = document_["textures"].size();
+    document_["textures"].push_back({{"name", map.name}, {"sampler", 0}, {"source", number}});
+    document_["images"].push_back({{"name", map.name}, {"mimeType", "image/png"}});
+    return number;
+  }
+
+  void add_images(const MeshLevel& level) {
+    if (!has_maps(level)) return;
+    for (const SkinMap& map : level.skin->maps) {
+      document_["images"][num_images_++]["bufferView"] = document_["bufferViews"].size();
+      document_["bufferViews"].push_back(
+          {{"buffer", 0}, {"byteOffset", num_bytes_}, {"byteLength", map.png.size()}});
+      num_bytes_ += padded(map.png.size());
+    }
+  }
+
+  void add_arrays(const MeshLevel& level, std::size_t number) {
+    const TriangleMesh& mesh = *level.mesh;
+    const std::uint64_t vertices = num_stored(level);
     const auto [low, high] = float_bounds(mesh);
     Json attributes;
     attributes["POSITION"] = add_array(vertices, kArrayBuffer, kFloat, "VEC3", 12);
@@ -156,14 +161,18 @@ class GlbDocument {
     if (!mesh.normals.empty()) {
       attributes["NORMAL"] = add_array(vertices, kArrayBuffer, kFloat, "VEC3", 12);
     }
-    if (!mesh.colors.empty()) {
+    if (has_tangents(level)) attributes["TANGENT"] = add_array(vertices, kArrayBuffer, kFloat, "VEC4", 16);
+    if (has_vertex_colors(level)) {
       attributes["COLOR_0"] = add_array(vertices, kArrayBuffer, kUnsignedShort, "VEC4", 8);
       document_["accessors"].back()["normalized"] = true;
     }
-    if (level.map) attributes["TEXCOORD_0"] = add_array(vertices, kArrayBuffer, kFloat, "VEC2", 8);
+    if (level.skin) attributes["TEXCOORD_0"] = add_array(vertices, kArrayBuffer, kFloat, "VEC2", 8);
     const int indices = add_array(3 * mesh.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
-    const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
-    document_["meshes"].push_back({{"primitives", Json::array({primitive})}});
+    const std::size_t material = has_maps(level) ? number : 0;
+    const Json primitive = {
+        {"attributes", attributes}, {"indices", indices}, {"material", material}, {"mode", 4}};
+    document_["meshes"].push_back(
+        {{"name", level_name("body", number)}, {"primitives", Json::array({primitive})}});
   }
 
   // Adds one buffer view with one accessor and returns the number of the accessor.
@@ -178,6 +187,7 @@ class GlbDocument {
   }
 
   Json document_;
+  std::size_t num_images_ = 0;   // whose bytes have a place
   std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
 };
 
@@ -190,28 +200,43 @@ std::array<std::uint16_t, 256> linear_shorts() {
   return table;
 }
 
-// One value for each vertex, and again for those that are there twice; none where the mesh has none.
+// One value for each stored vertex; none where the mesh has none.
 template <typename Value, typename Stored>
-void append_all(BufferedOutput& buffer, const std::vector<Value>& values,
-                std::span<const std::uint32_t> doubled, const Stored& stored) {
+void append_all(BufferedOutput& buffer, const std::vector<Value>& values, const MeshLevel& level,
+                const Stored& stored) {
   if (values.empty()) return;
-  for (const Value& value : values) buffer.append_value(stored(value));
-  for (const std::uint32_t vertex : doubled) buffer.append_value(stored(values[vertex]));
+  if (!level.skin) {
+    for (const Value& value : values) buffer.append_value(stored(value));
+    return;
+  }
+  for (const std::uint32_t vertex : level.skin->coordinates.vertex_of)
+    buffer.append_value(stored(values[vertex]));
 }
 
-void append_arrays(BufferedOutput& buffer, const StoredMesh& level) {
-  const auto& [mesh, map] = level;
-  const std::span<const std::uint32_t> doubled = map ? std::span(map->doubled) : std::span<std::uint32_t>{};
+void append_arrays(BufferedOutput& buffer, const MeshLevel& level) {
   const auto narrowed = [](const Vec3d& v) { return to_float(v); };
-  append_all(buffer, mesh.vertices, doubled, narrowed);
-  append_all(buffer, mesh.normals, doubled, narrowed);
-  append_all(buffer, mesh.colors, doubled, [linear = linear_shorts()](const VertexColor& c) {
-    return std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}};
-  });
-  if (map) {
-    for (const std::array<float, 2>& uv : map->texcoords) buffer.append_value(uv);
+  append_all(buffer, level.mesh->vertices, level, narrowed);
+  append_all(buffer, level.mesh->normals, level, narrowed);
+  if (has_tangents(level)) {
+    for (const VertexTangent& tangent : level.skin->tangents) buffer.append_value(tangent);
   }
-  for (const Triangle& t : map ? map->triangles : mesh.triangles) buffer.append_value(t);
+  if (has_vertex_colors(level)) {
+    append_all(buffer, level.mesh->colors, level, [linear = linear_shorts()](const VertexColor& c) {
+      return std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}};
+    });
+  }
+  if (level.skin) {
+    for (const TexturePoint& uv : level.skin->coordinates.uv) buffer.append_value(uv);
+  }
+  for (const Triangle& t : stored_triangles(level)) buffer.append_value(t);
+}
+
+void append_images(BufferedOutput& buffer, const MeshLevel& level) {
+  if (!level.skin) return;
+  for (const SkinMap& map : level.skin->maps) {
+    buffer.append(map.png);
+    buffer.append(std::string(padded(map.png.size()) - map.png.size(), '\0'));
+  }
 }
 
 void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::string_view type) {
@@ -222,21 +247,13 @@ void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::strin
 }  // namespace
 
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  const TriangleMesh* const only = &mesh;
+  const MeshLevel only{&mesh, info.skin};
   write_glb_levels({&only, 1}, {}, file, info);
 }
 
-void write_glb_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
+void write_glb_levels(std::span<const MeshLevel> levels, std::span<const double> coverage,
                       const std::filesystem::path& file, const MeshFileInfo& info) {
-  std::vector<StoredMesh> stored;
-  for (const TriangleMesh* mesh : levels) {
-    stored.push_back({*mesh, std::nullopt});
-    if (info.texture_coordinates) {
-      stored.back().map =
-          longitude_latitude(*mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
-    }
-  }
-  const GlbDocument document(stored, coverage, info);
+  const GlbDocument document(levels, coverage, info);
   std::string json = document.json();
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + json.size() + 8 + document.num_bytes();
@@ -251,7 +268,8 @@ void write_glb_levels(std::span<const TriangleMesh* const> levels, std::span<con
   append_chunk_header(buffer, json.size(), "JSON");
   buffer.append(json);
   append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
-  for (const StoredMesh& level : stored) append_arrays(buffer, level);
+  for (const MeshLevel& level : levels) append_arrays(buffer, level);
+  for (const MeshLevel& level : levels) append_images(buffer, level);
   buffer.flush();
   out.commit();
 }

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <locale>
+#include <memory>
 #include <sstream>
+#include <utility>
 
+#include "geometry/atlas/longitude_map.h"
 #include "geometry/io/format_internal.h"
 
 namespace astrolith {
@@ -104,9 +108,32 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   return mesh;
 }
 
+namespace {
+
+// The mesh with coordinates by longitude.
+struct LongitudeLevel {
+  TriangleMesh mesh;
+  std::shared_ptr<const MeshSkin> skin;
+};
+LongitudeLevel longitude_level(const TriangleMesh& mesh, const MeshFileInfo& info) {
+  LongitudeMap map = longitude_map(mesh, info.whole_body ? Vec3d{} : info.origin.value_or(Vec3d{}));
+  MeshSkin skin{std::move(map.coordinates)};
+  skin.repeats = true;
+  return {std::move(map.mesh), std::make_shared<const MeshSkin>(std::move(skin))};
+}
+
+}  // namespace
+
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   const MeshFormat& format = written_mesh_format(file);
   require_writable(mesh, file);
+  if (info.texture_coordinates && format.has_texture_coordinates) {
+    const LongitudeLevel level = longitude_level(mesh, info);
+    MeshFileInfo skinned = info;
+    skinned.texture_coordinates = false;
+    skinned.skin = level.skin;
+    return write_mesh(level.mesh, file, skinned);
+  }
   if (!info.origin || !info.whole_body || format.tells_origin) return format.writer(mesh, file, info);
   TriangleMesh moved = mesh;
   for (Vec3d& p : moved.vertices) p += *info.origin;
@@ -114,10 +141,17 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, con
   format.writer(moved, file, info);
 }
 
-void write_mesh_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
+void write_mesh_levels(std::span<const MeshLevel> levels, std::span<const double> coverage,
                        const std::filesystem::path& file, const MeshFileInfo& info) {
-  for (const TriangleMesh* mesh : levels) require_writable(*mesh, file);
-  write_glb_levels(levels, coverage, file, info);
+  for (const MeshLevel& level : levels) require_writable(*level.mesh, file);
+  if (!info.texture_coordinates) return write_glb_levels(levels, coverage, file, info);
+  std::deque<LongitudeLevel> cut;
+  std::vector<MeshLevel> skinned;
+  for (const MeshLevel& level : levels) {
+    const LongitudeLevel& made = cut.emplace_back(longitude_level(*level.mesh, info));
+    skinned.push_back({&made.mesh, made.skin});
+  }
+  write_glb_levels(skinned, coverage, file, info);
 }
 
 std::vector<std::string> info_lines(const MeshFileInfo& info) {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "geometry/atlas/texture_coordinates.h"
+#include "geometry/atlas/vertex_tangents.h"
 #include "geometry/io/mesh_format.h"
 #include "geometry/triangle_mesh.h"
 
@@ -38,6 +41,22 @@ TriangleMesh read_mesh(const std::filesystem::path& file);
 // has vertices and normals and no triangles.
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file);
 
+// An image that a material shows.
+struct SkinMap {
+  enum class Use { kBaseColor, kNormal, kOcclusion };
+  Use use = Use::kBaseColor;
+  std::string name;
+  std::string png;  // the bytes of the file
+};
+
+// What lies on a mesh: texture coordinates, and the maps that they look up.
+struct MeshSkin {
+  TextureCoordinates coordinates;
+  std::vector<VertexTangent> tangents = {};  // (#W), or empty
+  std::vector<SkinMap> maps = {};
+  bool repeats = false;  // maps go on beyond their left and right border, as those by longitude do
+};
+
 // Statements of a mesh file about itself. Empty texts are not written.
 struct MeshFileInfo {
   std::string length_unit;  // "m", "km", ...: what one unit of a coordinate is
@@ -48,10 +67,10 @@ struct MeshFileInfo {
   std::optional<Vec3d> origin = std::nullopt;
   bool whole_body = false;              // readers add the origin of a whole body, not that of a part
   std::vector<std::string> notes = {};  // further comment lines
-  // A .glb gets texture coordinates: u = 1/2 + longitude / 360 degrees, v = 1/2 - latitude / 180 degrees,
-  // seen from the origin of the frame, or of a whole body. Vertices along the 180th meridian are then there
-  // twice, at equal places.
+  // A .glb or .obj gets texture coordinates by longitude and latitude, seen from the origin of the frame, or
+  // of a whole body (geometry/atlas/longitude_map.h). Triangles are then cut along the 180th meridian.
   bool texture_coordinates = false;
+  std::shared_ptr<const MeshSkin> skin = nullptr;  // of a .glb or .obj, instead of that; none where null
 };
 
 // Writes .ply (binary little endian, float32; .ply.zst is compressed), .obj (text, exact), .stl (binary,
@@ -67,7 +86,11 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, con
 // Writes the levels of detail of one body into a .glb, the finest first: an engine shows level k + 1 where
 // the body takes less than coverage[k] of the screen's height (MSFT_lod). `coverage` has a number in 0 .. 1
 // for each level, falling; the last is the one below which nothing is shown. Throws as write_mesh does.
-void write_mesh_levels(std::span<const TriangleMesh* const> levels, std::span<const double> coverage,
+struct MeshLevel {
+  const TriangleMesh* mesh;
+  std::shared_ptr<const MeshSkin> skin = nullptr;
+};
+void write_mesh_levels(std::span<const MeshLevel> levels, std::span<const double> coverage,
                        const std::filesystem::path& file, const MeshFileInfo& info);
 
 // What a file says of the unit of its lengths.

@@ -25,13 +25,24 @@ std::string line_of(std::string keyword, const Vec3d& v) {
   return keyword + "\n";
 }
 
-std::string line_of(const Triangle& triangle, bool with_normals) {
+// The line of a face. `textured` has its corners in the texture, or is null.
+std::string line_of(const Triangle& triangle, const Triangle* textured, bool with_normals) {
+  const auto number = [](std::uint32_t index) { return std::to_string(std::uint64_t{index} + 1); };
   std::string line = "f";
-  for (const std::uint32_t index : triangle) {
-    const std::string number = std::to_string(std::uint64_t{index} + 1);
-    line += " " + number;
-    if (with_normals) line += "//" + number;
+  for (std::size_t k = 0; k < 3; ++k) {
+    line += ' ';
+    line += number(triangle[k]);
+    if (textured != nullptr || with_normals) line += '/';
+    if (textured != nullptr) line += number((*textured)[k]);
+    if (with_normals) line += '/' + number(triangle[k]);
   }
+  return line + "\n";
+}
+
+// Wavefront counts v from the bottom of the image up.
+std::string line_of(const TexturePoint& uv) {
+  std::string line = "vt";
+  append_words(line, double{uv[0]}, 1.0 - double{uv[1]});
   return line + "\n";
 }
 
@@ -68,7 +79,14 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   buffer.append("# axes: z up; import into Blender with forward axis Y, up axis Z\n");
   for (const Vec3d& v : mesh.vertices) buffer.append(line_of("v", v));
   for (const Vec3d& n : mesh.normals) buffer.append(line_of("vn", n));
-  for (const Triangle& t : mesh.triangles) buffer.append(line_of(t, !mesh.normals.empty()));
+  const TextureCoordinates* const texture = info.skin ? &info.skin->coordinates : nullptr;
+  if (texture != nullptr) {
+    for (const TexturePoint& uv : texture->uv) buffer.append(line_of(uv));
+  }
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    buffer.append(line_of(mesh.triangles[f], texture != nullptr ? &texture->triangles[f] : nullptr,
+                          !mesh.normals.empty()));
+  }
   buffer.flush();
   out.commit();
 }

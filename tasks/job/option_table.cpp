@@ -162,8 +162,14 @@ std::string OptionRow::value_words() const {
     text = is_name ? "FILE" : "N";
     for (const ValueRule& rule : rules) text = rule.words.starts_with('{') ? rule.words : text + rule.words;
   }
+  if (!implied.empty()) text = "[" + text + "]";
   if (!default_words.empty()) text += " (default " + default_words + ")";
   return text + (required ? " (required)" : "");
+}
+
+bool OptionRow::takes(const std::string& word) const {
+  return std::all_of(rules.begin(), rules.end(),
+                     [&](const ValueRule& rule) { return rule.complaint(word).empty(); });
 }
 
 Option& Option::required() {
@@ -188,6 +194,11 @@ Option& Option::excludes(const Option& other) {
 
 Option& Option::expected(int count) {
   row_->count = count;
+  return *this;
+}
+
+Option& Option::implied(std::string word) {
+  row_->implied = std::move(word);
   return *this;
 }
 
@@ -261,6 +272,8 @@ Option OptionTable::option(std::string_view name) const {
 }
 
 void OptionTable::set(OptionRow& row, const std::vector<std::string>& words) try {
+  // A flag in Python.
+  if (!row.implied.empty() && words == std::vector<std::string>{"true"}) return set(row, {row.implied});
   for (const std::string& word : words) {
     for (const ValueRule& rule : row.rules) {
       if (const std::string complaint = rule.complaint(word); !complaint.empty()) throw InputError(complaint);

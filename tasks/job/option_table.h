@@ -54,6 +54,7 @@ struct OptionRow {
   std::vector<ValueRule> rules{};
   std::string placeholder{};    // the words for its value in help; empty: made from type and rules
   std::string default_words{};  // empty: the help states no default
+  std::string implied{};        // the word that the option means without a value; empty: it needs one
   std::vector<std::string> needs{}, excludes{};  // names of other options
   FilesOf reads{}, writes{};
   bool required = false;             // on a command line
@@ -75,6 +76,8 @@ struct OptionRow {
   bool takes_several() const { return value.index() >= 8; }
   // "N in [0 - 1024] (default 0)": what stands behind the names in help; empty for a flag.
   std::string value_words() const;
+  // Whether a word may be the option's value.
+  bool takes(const std::string& word) const;
 };
 
 // A row to be described further; the calls return the option, so that they can be chained.
@@ -89,6 +92,8 @@ class Option {
   Option& excludes(const Option& other);
   // The option takes exactly `count` values.
   Option& expected(int count);
+  // Without a value the option means `word`. A word that follows it is its value where the rules allow that.
+  Option& implied(std::string word);
   // The option may be given several times and takes one value each time.
   Option& repeated();
   Option& description(std::string text);

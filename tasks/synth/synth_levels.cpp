@@ -104,8 +104,8 @@ void write_levels(Job& job, const fs::path& output, const TriangleMesh& mesh, in
     return;
   }
   const std::vector<double> coverage = coverage_of(coarser, mesh.bounds().diagonal());
-  std::vector<const TriangleMesh*> all{&mesh};
-  for (const DetailLevel& level : coarser) all.push_back(&level.mesh);
+  std::vector<MeshLevel> all{{&mesh}};
+  for (const DetailLevel& level : coarser) all.push_back({&level.mesh});
   write_mesh_levels(all, coverage, output, info);
 }
 
