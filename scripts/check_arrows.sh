@@ -31,6 +31,7 @@ synthesis/landforms        -> numerics recipe geometry gravity synthesis/noise s
 synthesis/relief           -> numerics recipe synthesis/noise synthesis/body synthesis/exemplar
 synthesis/field            -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body synthesis/spots synthesis/gabor synthesis/exemplar synthesis/landforms synthesis/relief
 synthesis/finish           -> numerics recipe geometry synthesis
+synthesis/bake             -> numerics recipe geometry synthesis/mesh synthesis/picture synthesis/field
 cuda                       -> numerics descriptor synthesis cuda/.
 cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics

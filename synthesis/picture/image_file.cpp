@@ -43,9 +43,8 @@ struct FreeBytes {
   void operator()(void* bytes) const { std::free(bytes); }
 };
 
-void write_png(const PngLayout& layout, std::span<const std::byte> data,
-               const std::filesystem::path& target) {
-  OutputFile file(target);
+// `name` begins the message of an error.
+std::string encoded_png(const PngLayout& layout, std::span<const std::byte> data, const std::string& name) {
   const std::unique_ptr<spng_ctx, FreeEncoder> encoder(spng_ctx_new(SPNG_CTX_ENCODER));
   spng_ihdr header{static_cast<std::uint32_t>(layout.width),
                    static_cast<std::uint32_t>(layout.height),
@@ -63,8 +62,15 @@ void write_png(const PngLayout& layout, std::span<const std::byte> data,
   int error = 0;
   const std::unique_ptr<void, FreeBytes> bytes(done ? spng_get_png_buffer(encoder.get(), &size, &error)
                                                     : nullptr);
-  if (bytes == nullptr) throw WorkError(target.string() + ": the image could not be encoded as PNG");
-  file.write(bytes.get(), size);
+  if (bytes == nullptr) throw WorkError(name + ": the image could not be encoded as PNG");
+  return {static_cast<const char*>(bytes.get()), size};
+}
+
+void write_png(const PngLayout& layout, std::span<const std::byte> data,
+               const std::filesystem::path& target) {
+  OutputFile file(target);
+  const std::string bytes = encoded_png(layout, data, target.string());
+  file.write(bytes.data(), bytes.size());
   file.commit();
 }
 
@@ -166,6 +172,19 @@ void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::f
   const auto bytes = first_channels<std::uint8_t>(image, channels, byte_of);
   constexpr int kFast = 4;  // a tenth of a preview's time less than 6, for 7 % more bytes
   write_png({image.width, image.height, 8, type, kFast}, std::as_bytes(std::span(bytes)), file);
+}
+
+std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels) {
+  constexpr int kFast = 3;
+  check_size(values.size(), static_cast<std::size_t>(channels), width, height, "PNG");
+  const spng_color_type type = channels == 1 ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_TRUECOLOR;
+  return encoded_png({width, height, 8, type, kFast}, std::as_bytes(values), "PNG");
+}
+
+std::string png_of(std::span<const std::uint16_t> grey, int width, int height) {
+  constexpr int kFast = 3;
+  check_size(grey.size(), 1, width, height, "PNG");
+  return encoded_png({width, height, 16, SPNG_COLOR_TYPE_GRAYSCALE, kFast}, std::as_bytes(grey), "PNG");
 }
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file) {

@@ -18,7 +18,7 @@
 #include "numerics/srgb.h"
 #include "numerics/tangent_frame.h"
 #include "synthesis/picture/preview_rays_internal.h"
-#include "synthesis/picture/ray_scene_internal.h"
+#include "synthesis/picture/ray_scene.h"
 
 namespace astrolith {
 namespace {

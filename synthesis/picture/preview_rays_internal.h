@@ -8,7 +8,7 @@
 
 #include "geometry/triangle_mesh.h"
 #include "synthesis/picture/preview.h"
-#include "synthesis/picture/ray_scene_internal.h"
+#include "synthesis/picture/ray_scene.h"
 
 namespace astrolith {
 

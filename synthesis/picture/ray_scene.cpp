@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "numerics/errors.h"
-#include "synthesis/picture/ray_scene_internal.h"
+#include "synthesis/picture/ray_scene.h"
 
 namespace astrolith {
 namespace {

@@ -19,6 +19,7 @@
 #include "tasks/job/density_question.h"
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
+#include "tasks/synth/synth_bake.h"
 #include "tasks/synth/synth_finish.h"
 #include "tasks/synth/synth_levels.h"
 #include "tasks/synth/synth_members.h"
@@ -63,8 +64,10 @@ void declare_options(Job& job, SynthOptions& options) {
               "--write-recipe or --page is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
-        return options.texture.size.empty() ? level_files(words.front(), options.body.mesh.levels)
-                                            : texture_files(options.texture, words.front());
+        if (!options.texture.size.empty()) return texture_files(options.texture, words.front());
+        std::vector<fs::path> files = level_files(words.front(), options.body.mesh.levels);
+        for (fs::path& map : map_files(options.body.mesh, words.front())) files.push_back(std::move(map));
+        return files;
       });
   declare_mesh_options(job, options.body.mesh);
   job.options
@@ -135,7 +138,7 @@ void declare_options(Job& job, SynthOptions& options) {
     if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
-  for (const char* of_one : {"--texture", "--tile", "--lod", "--page"}) {
+  for (const char* of_one : {"--texture", "--tile", "--lod", "--bake", "--page"}) {
     job.options.option("--members").excludes(job.options.option(of_one));
   }
   job.options.option("--seed")

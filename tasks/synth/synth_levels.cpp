@@ -79,8 +79,9 @@ std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int
   return coarser;
 }
 
-void write_levels(Job& job, const fs::path& output, const TriangleMesh& mesh, int resolution,
-                  const std::vector<DetailLevel>& coarser, const MeshFileInfo& info) {
+void write_levels(Job& job, const fs::path& output, int resolution, const std::vector<DetailLevel>& coarser,
+                  std::span<const MeshLevel> levels, const MeshFileInfo& info) {
+  const TriangleMesh& mesh = *levels.front().mesh;
   auto list = nlohmann::ordered_json::array();
   const auto add = [&](int level, const TriangleMesh& made, int cells, const SurfaceDistanceReport& error) {
     list.push_back({{"file", level_file(output, level).filename().string()},
@@ -99,14 +100,14 @@ void write_levels(Job& job, const fs::path& output, const TriangleMesh& mesh, in
   }
   job.summary["levels"] = std::move(list);
   if (level_file(output, 1) != output) {
-    for (std::size_t k = 0; k < coarser.size(); ++k)
-      write_mesh(coarser[k].mesh, level_file(output, static_cast<int>(k) + 1), info);
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+      MeshFileInfo of_level = info;
+      of_level.skin = levels[k].skin;
+      write_mesh(*levels[k].mesh, level_file(output, static_cast<int>(k)), of_level);
+    }
     return;
   }
-  const std::vector<double> coverage = coverage_of(coarser, mesh.bounds().diagonal());
-  std::vector<MeshLevel> all{{&mesh}};
-  for (const DetailLevel& level : coarser) all.push_back({&level.mesh});
-  write_mesh_levels(all, coverage, output, info);
+  write_mesh_levels(levels, coverage_of(coarser, mesh.bounds().diagonal()), output, info);
 }
 
 }  // namespace astrolith

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,10 @@ void check_levels(int levels, int resolution);
 std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int levels,
                                         const TriangleMesh& mesh);
 
-// Writes the coarser levels beside the mesh, or all levels into one .glb, and reports them.
-void write_levels(Job& job, const std::filesystem::path& output, const TriangleMesh& mesh, int resolution,
-                  const std::vector<DetailLevel>& coarser, const MeshFileInfo& info);
+// Writes the coarser levels beside the mesh, or all levels into one .glb, and reports them. `levels` has the
+// meshes of all, the finest first, with what lies on them; the finest has `resolution` cells.
+void write_levels(Job& job, const std::filesystem::path& output, int resolution,
+                  const std::vector<DetailLevel>& coarser, std::span<const MeshLevel> levels,
+                  const MeshFileInfo& info);
 
 }  // namespace astrolith

@@ -16,6 +16,7 @@
 #include "synthesis/field/feature_list.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
+#include "tasks/synth/synth_bake.h"
 #include "tasks/synth/synth_gravity.h"
 #include "tasks/synth/synth_levels.h"
 #include "tasks/synth/synth_maps.h"
@@ -71,6 +72,7 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
   if (request.gravity.wanted() && (region.tile.count > 1 || request.points || request.labels)) {
     throw InputError("--gravity: is of the whole body or a patch; leave out --tile, --points and --labels");
   }
+  check_bake(request, recipe, file, region.is_cut());
   check_gravity(request.gravity, recipe);
   if (request.least_component > 0.0 && region.is_cut()) {
     throw InputError(
@@ -89,7 +91,7 @@ void check_mesh_name(const MeshRequest& request, const fs::path& output) {
   const MeshFormat& format = written_mesh_format(output);
   if (request.points || request.labels || request.gravity.wanted())
     require_mesh_format(output, &MeshFormat::has_values);
-  if (request.texture_coordinates) require_mesh_format(output, &MeshFormat::has_texture_coordinates);
+  if (!request.uv.empty()) require_mesh_format(output, &MeshFormat::has_texture_coordinates);
   if ((request.even || request.levels > 1) && format.counts != nullptr) {
     throw InputError(output.string() +
                      ": has facets of its own; leave out --even and --lod, or write a .ply");
@@ -100,6 +102,7 @@ void check_mesh_outputs(const Job& job, const MeshRequest& request, const fs::pa
   if (!output.empty()) {
     check_mesh_name(request, output);
     for (const fs::path& file : level_files(output, request.levels)) require_writable(file);
+    for (const fs::path& file : map_files(request, output)) require_writable(file);
   }
   check_preview(job, request.preview);
   for (const fs::path& map : {request.height_map, request.hazard.file}) {
@@ -187,9 +190,15 @@ void write_levels_of(Job& job, const MeshPlan& plan, const BodyMeshJob& made_by,
                      const std::vector<VertexValues>& quantities) {
   std::vector<DetailLevel> coarser = coarser_levels(job, made_by, plan.request.levels, result.collected());
   for (DetailLevel& level : coarser) result.paint(level.mesh);
+  std::vector<MeshLevel> levels{{&result.collected()}};
+  for (const DetailLevel& level : coarser) levels.push_back({&level.mesh});
+  if (plan.request.has_charts()) {
+    add_skins(job, plan.request, {made_by, result.colors(), plan.output}, levels);
+    result.set_skin(levels.front().skin);
+  }
   if (coarser.empty() || level_file(plan.output, 1) != plan.output) result.write(quantities);
   if (coarser.empty()) return;
-  write_levels(job, plan.output, result.collected(), plan.resolution, coarser, result.info());
+  write_levels(job, plan.output, plan.resolution, coarser, levels, result.info());
 }
 
 // Makes the mesh and all files that were asked for.
@@ -331,10 +340,7 @@ void declare_mesh_options(Job& job, MeshRequest& request) {
       "with each vertex the layer that changed the surface most there (0 = the bare body, 1 = "
       "the recipe's first layer; the file's header says which is which) and the height of "
       "all layers (.ply)");
-  job.options.add_flag(
-      "--uv", request.texture_coordinates,
-      "texture coordinates in a .glb: u = 1/2 + longitude / 360 degrees, v from the north pole to "
-      "the south; vertices along the 180th meridian are then there twice");
+  declare_bake_options(job, request);
   request.device.add_to(job.options);
   declare_preview_options(job, request.preview);
   job.options
@@ -413,7 +419,7 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
                     request.least_component > 0.0,
                     request.gravity.wanted(),
                     request.labels,
-                    request.texture_coordinates,
+                    !request.uv.empty(),
                     request.even};
   const int resolution = choose_resolution(job, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);

@@ -44,11 +44,13 @@ struct MeshRequest {
   double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
-  bool texture_coordinates = false;  // in a .glb
+  std::string uv;                    // texture coordinates: "longitude" or "charts"; empty = none
+  int bake = 0;                      // side of the maps, texels; 0 = none
   bool even = false;                 // triangles are made more even
   int levels = 1;                    // of detail
   DeviceOption device;
 
+  bool has_charts() const { return uv == "charts"; }
   bool has_maps() const { return !height_map.empty() || !hazard.file.empty(); }
 };
 

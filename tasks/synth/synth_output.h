@@ -66,7 +66,7 @@ class MeshOutput {
     const MeshFormat& format = written_mesh_format(output);
     if (region.is_patch || !(recipe.origin == Vec3d{})) info_.origin = recipe.origin + region.center;
     info_.whole_body = !region.is_patch;
-    info_.texture_coordinates = request.texture_coordinates;
+    info_.texture_coordinates = request.uv == "longitude";
     if (has_colors(recipe) && (format.has_colors || !request.preview.file.empty())) {
       colors_.emplace(recipe, file.string(), field);
     }
@@ -92,6 +92,10 @@ class MeshOutput {
     if (colors_) mesh.colors = colors_->colors_of(center_, mesh);
   }
   const MeshFileInfo& info() const { return info_; }
+  // Lays texture coordinates and maps on the mesh.
+  void set_skin(std::shared_ptr<const MeshSkin> skin) { info_.skin = std::move(skin); }
+  // The colours of the recipe's layers; null where nothing shows them.
+  const SurfaceColors* colors() const { return colors_ ? &*colors_ : nullptr; }
 
   // Completes the file. Before that it does not exist. Quantities, if any, are properties of its vertices.
   void write(const std::vector<VertexValues>& quantities) {

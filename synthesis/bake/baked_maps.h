@@ -1,0 +1,56 @@
+// Maps of a textured mesh that show the whole surface of a recipe, in as fine a detail as the texels resolve.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "numerics/progress.h"
+#include "synthesis/bake/atlas_texels.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/field/surface_colors.h"
+#include "synthesis/field/surface_labels.h"
+
+namespace astrolith {
+
+// A mesh of the body to which rays of the occlusion go.
+struct BakeOccluder {
+  const TriangleMesh& mesh;
+  double cell;  // side of its cells, length units
+};
+
+struct BakeSources {
+  const ImplicitField& field;
+  const SurfaceLabels& labels;
+  const SurfaceColors* colors;  // null: no layer paints
+  BakeOccluder occluder;
+};
+
+// The maps, row-major with the top row first, `side` texels wide and high. Texels beyond the borders of charts
+// show what a map has without detail.
+struct BakedMaps {
+  int side = 0;
+  // (x 3) Normals in the frame of tangent t, bitangent b and normal n as vertices have them, interpolated and
+  // not made unit (MikkTSpace): m = x t + y b + z n has the direction of the surface's normal. Bytes are
+  // 127.5 + 127.5 (x, y, z), of unit length; y is towards the image's top (glTF, OpenGL).
+  std::vector<std::uint8_t> normal;
+  // The way from the mesh to the surface along the mesh's interpolated normal, made unit: `lowest` + value *
+  // (`highest` - `lowest`) / 65535, length units.
+  std::vector<std::uint16_t> height;
+  double lowest = 0.0, highest = 0.0;
+  std::vector<std::uint8_t> occlusion;  // share of the sky that is open, weighted by the cosine; 255: all
+  // Mean curvature from the differences of normals of neighbouring texels: 128 is flat, 255 a bump and 1 a pit
+  // of radius `curvature_radius`, length units, or tighter.
+  std::vector<std::uint8_t> curvature;
+  double curvature_radius = 0.0;
+  std::vector<std::uint8_t> label;  // SurfaceLabels, 255 for all labels above
+  std::vector<std::uint8_t> color;  // (x 3) sRGB; empty where no layer paints
+  std::int64_t covered = 0;         // texels that show a place
+  std::int64_t missed = 0;          // of them: those along whose normal no surface was met
+};
+
+// Evaluates the field for every texel whose centre lies in a triangle, and pads the charts by kChartPadding
+// texels. The field is that of a whole body. Throws WorkError where progress asks to stop. The same bytes for
+// any number of threads.
+BakedMaps bake_maps(const BakeSources& sources, const TexturedMesh& textured, const Progress& progress);
+
+}  // namespace astrolith
