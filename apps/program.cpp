@@ -131,8 +131,8 @@ void declare(OptionRow& row, CLI::App& parser) {
   option->required(row.required);
 }
 
-// The words of a command line, the last first, as CLI11 takes them. An option that stands without a value gets
-// the one that it means.
+// The words of a command line, the last first, as CLI11 takes them. An option that stands without a value
+// gets the one that it means.
 std::vector<std::string> words_of(const OptionTable& options, int argc, char** argv) {
   std::vector<std::string> words;
   for (int i = argc - 1; i > 0; --i) {

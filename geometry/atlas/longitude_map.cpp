@@ -71,8 +71,7 @@ class MeridianCut {
     const auto is_inside = [&](double s) { return sum > 0.0 ? s > 0.0 : s < 0.0; };
     if (std::all_of(sides.begin(), sides.end(), is_inside)) {
       const std::array<double, 3> weights{sides[1] / sum, sides[2] / sum, sides[0] / sum};
-      const double z =
-          weights[0] * place(t[0]).z + weights[1] * place(t[1]).z + weights[2] * place(t[2]).z;
+      const double z = weights[0] * place(t[0]).z + weights[1] * place(t[1]).z + weights[2] * place(t[2]).z;
       const std::uint32_t pole = add(t, weights, {0.0, 0.0, z});
       for (std::size_t k = 0; k < 3; ++k) out.push_back({t[k], t[(k + 1) % 3], pole});
       return;
@@ -128,9 +127,7 @@ class MeridianCut {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> on_edges_;
 };
 
-double longitude_share(const Vec3d& p) {
-  return 0.5 + portable::atan2(p.y, p.x) / (2.0 * std::numbers::pi);
-}
+double longitude_share(const Vec3d& p) { return 0.5 + portable::atan2(p.y, p.x) / (2.0 * std::numbers::pi); }
 
 float latitude_share(const Vec3d& p) {
   const double latitude = portable::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y));

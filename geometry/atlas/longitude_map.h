@@ -7,7 +7,7 @@
 namespace astrolith {
 
 struct LongitudeMap {
-  TriangleMesh mesh;               // cut along the 180th meridian and at the poles; closed where it was closed
+  TriangleMesh mesh;  // cut along the 180th meridian and at the poles; closed where it was closed
   TextureCoordinates coordinates;  // of the cut mesh
 };
 

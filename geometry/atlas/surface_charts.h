@@ -32,9 +32,9 @@ struct SurfaceCharts {
 };
 
 // Each triangle takes the axis that the surface around it faces, where its own normal lies within 59 degrees
-// of that axis, and else the nearest one. A chart is a set of triangles of one axis, joined by edges, no two of
-// which overlap in the projection. Bodies of any topology will do, as will open meshes. Triangles without area
-// join any chart. Throws InputError for indices out of range.
+// of that axis, and else the nearest one. A chart is a set of triangles of one axis, joined by edges, no two
+// of which overlap in the projection. Bodies of any topology will do, as will open meshes. Triangles without
+// area join any chart. Throws InputError for indices out of range.
 SurfaceCharts surface_charts(const TriangleMesh& mesh);
 
 }  // namespace astrolith

@@ -84,8 +84,8 @@ TextureCoordinates coordinates_of(const TriangleMesh& mesh, const SurfaceCharts&
     Triangle& out = made.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.triangles[f][k];
-      const auto [found, is_new] = known.try_emplace((std::uint64_t{c} << 32) | v,
-                                                     static_cast<std::uint32_t>(made.uv.size()));
+      const auto [found, is_new] =
+          known.try_emplace((std::uint64_t{c} << 32) | v, static_cast<std::uint32_t>(made.uv.size()));
       out[k] = found->second;
       if (!is_new) continue;
       const Vec3d& p = mesh.vertices[v];

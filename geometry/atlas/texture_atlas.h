@@ -24,8 +24,8 @@ struct TextureAtlas {
 };
 
 // Lays the charts of surface_charts() out in an image of side x side texels, as large as they fit. All charts
-// have one scale. A textured vertex at (x, y) texels from the image's top left corner has u = x / side and v =
-// y / side. Throws InputError, which begins with `name`, where the charts do not fit with a texel for each
+// have one scale. A textured vertex at (x, y) texels from the image's top left corner has u = x / side and v
+// = y / side. Throws InputError, which begins with `name`, where the charts do not fit with a texel for each
 // mean edge.
 TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name);
 

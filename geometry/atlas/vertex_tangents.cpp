@@ -41,7 +41,8 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
     const TextureSlope slope = texture_slope(p, uv);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d& normal = mesh.normals[coordinates.vertex_of[t[k]]];
-      const Vec3d next = in_plane(p[(k + 1) % 3] - p[k], normal), last = in_plane(p[(k + 2) % 3] - p[k], normal);
+      const Vec3d next = in_plane(p[(k + 1) % 3] - p[k], normal),
+                  last = in_plane(p[(k + 2) % 3] - p[k], normal);
       sums[t[k]] += angle_between(next, last) * normalized(in_plane(slope.along_u, normal));
       signs[t[k]] = static_cast<float>(slope.sign);
     }

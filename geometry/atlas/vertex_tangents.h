@@ -14,9 +14,9 @@ using VertexTangent = std::array<float, 4>;
 
 // (#W) The tangents of MikkTSpace (Mikkelsen 2008), which glTF names and engines compute when a file has
 // none: around a textured vertex, the derivatives of position by u of its triangles are projected into the
-// plane of its normal, made unit and averaged with the angles of the triangles, projected too, as weights. The
-// mesh must have normals. Where triangles are mirrored, each textured vertex must belong to triangles of one
-// handedness.
+// plane of its normal, made unit and averaged with the angles of the triangles, projected too, as weights.
+// The mesh must have normals. Where triangles are mirrored, each textured vertex must belong to triangles of
+// one handedness.
 std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const TextureCoordinates& coordinates);
 
 }  // namespace astrolith

@@ -49,8 +49,7 @@ std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
 class GlbDocument {
  public:
-  GlbDocument(std::span<const MeshLevel> levels, std::span<const double> coverage,
-              const MeshFileInfo& info) {
+  GlbDocument(std::span<const MeshLevel> levels, std::span<const double> coverage, const MeshFileInfo& info) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
@@ -81,7 +80,8 @@ class GlbDocument {
   static Json node(const MeshFileInfo& info, std::size_t level) {
     constexpr double kHalf = 0.70710678118654757;
     const double scale = metres_of(info.length_unit);
-    Json result = {{"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
+    Json result = {
+        {"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
     result["scale"] = {scale, scale, scale};
     return result;
   }

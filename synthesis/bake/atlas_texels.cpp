@@ -52,7 +52,8 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
   for (std::size_t c = 0; c < atlas.places.size(); ++c) {
     const auto [x, y] = atlas.places[c];
     const auto [width, height] = atlas.sizes[c];
-    charts.push_back({static_cast<std::uint32_t>(tiles_.size()), x, y, tiles_along(width), tiles_along(height)});
+    charts.push_back(
+        {static_cast<std::uint32_t>(tiles_.size()), x, y, tiles_along(width), tiles_along(height)});
     for (int ty = 0; ty < height; ty += TexelTile::kSide) {
       for (int tx = 0; tx < width; tx += TexelTile::kSide) {
         tiles_.push_back({x + tx, y + ty, std::min(TexelTile::kSide, width - tx),
@@ -67,7 +68,8 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
     const auto tile_of = [](int texel, int begin, int count) {
       return std::clamp((texel - begin) / TexelTile::kSide, 0, count - 1);
     };
-    for (int j = tile_of(range.y0 - 1, chart.y, chart.rows); j <= tile_of(range.y1 + 1, chart.y, chart.rows); ++j) {
+    for (int j = tile_of(range.y0 - 1, chart.y, chart.rows); j <= tile_of(range.y1 + 1, chart.y, chart.rows);
+         ++j) {
       for (int i = tile_of(range.x0 - 1, chart.x, chart.columns);
            i <= tile_of(range.x1 + 1, chart.x, chart.columns); ++i)
         use(chart.first + static_cast<std::uint32_t>(j * chart.columns + i));
@@ -80,7 +82,8 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
   for (TexelTile& tile : tiles_) tile.first = sum, sum += tile.count, tile.count = 0;
   triangles_.resize(sum);
   for (std::uint32_t f = 0; f < count; ++f) {
-    for_each_tile_of(f, [&](std::uint32_t tile) { triangles_[tiles_[tile].first + tiles_[tile].count++] = f; });
+    for_each_tile_of(f,
+                     [&](std::uint32_t tile) { triangles_[tiles_[tile].first + tiles_[tile].count++] = f; });
   }
   std::erase_if(tiles_, [](const TexelTile& tile) { return tile.count == 0; });
 }
@@ -113,7 +116,8 @@ void AtlasTexels::draw(std::uint32_t triangle, const TexelTile& tile, std::span<
         normal += weights[k] * textured_.mesh.normals[v];
         tangent += weights[k] * Vec3d{double{t[0]}, double{t[1]}, double{t[2]}};
       }
-      place = {true, to_float(position), to_float(normal), to_float(tangent), textured_.tangents[corners[0]][3]};
+      place = {true, to_float(position), to_float(normal), to_float(tangent),
+               textured_.tangents[corners[0]][3]};
     }
   }
 }

@@ -18,8 +18,8 @@ struct TexturedMesh {
   std::span<const VertexTangent> tangents;  // (#W)
 };
 
-// What a material's interpolation has at the centre of a texel. Nothing of it has unit length but the sum of a
-// triangle's weights.
+// What a material's interpolation has at the centre of a texel. Nothing of it has unit length but the sum of
+// a triangle's weights.
 struct TexelPlace {
   bool is_covered = false;  // whether the centre lies in a triangle; all else is 0 if not
   Vec3f position;           // length units

@@ -42,8 +42,9 @@ struct TileWork {
   std::array<TexelPlace, TexelTile::kMostTexels> places;
   std::array<std::int16_t, TexelTile::kMostTexels> number;  // of a texel's point; -1: not covered
   std::vector<SurfacePoint> points;
-  std::vector<MeshVertex> vertices;
+  std::vector<MeshVertex> vertices;  // whose layers are looked up
   std::vector<VertexLabel> labels;
+  std::vector<std::int16_t> label_of;  // the label of each point
   std::vector<VertexColor> colors;
 };
 
@@ -95,22 +96,40 @@ class MapBaker {
     for (std::size_t i = 0; i < tile.num_texels(); ++i) {
       const TexelPlace& place = work.places[i];
       work.number[i] = place.is_covered ? static_cast<std::int16_t>(work.points.size()) : std::int16_t{-1};
-      if (place.is_covered) work.points.push_back({place.position, normalized(place.normal), 0.0f, {}, false});
+      if (place.is_covered)
+        work.points.push_back({place.position, normalized(place.normal), 0.0f, {}, false});
     }
     if (work.points.empty()) return;
-    find_surface(sources_.field, texel_, work.points);
-    look_up_layers(work);
+    const TexelGrid grid{{work.number.data(), tile.num_texels()}, tile.padded_width()};
+    find_surface(sources_.field, texel_, grid, work.points);
+    look_up_layers(tile, work);
     for (int y = 0; y < tile.height; ++y) {
       for (int x = 0; x < tile.width; ++x) missed += store(tile, work, x, y);
     }
   }
 
-  void look_up_layers(TileWork& work) const {
+  // A label stands for a square of 2 x 2 texels: that of its first covered one. Colours are of each texel.
+  void look_up_layers(const TexelTile& tile, TileWork& work) const {
     work.vertices.clear();
-    for (const SurfacePoint& p : work.points) work.vertices.push_back({p.place(), p.normal});
+    work.label_of.resize(work.points.size());
+    std::array<std::int16_t, TexelTile::kMostTexels> of_square;
+    of_square.fill(-1);
+    for (std::size_t i = 0; i < tile.num_texels(); ++i) {
+      if (work.number[i] < 0) continue;
+      const auto point = static_cast<std::size_t>(work.number[i]);
+      const auto row = static_cast<std::size_t>(tile.padded_width());
+      std::int16_t& known = of_square[(i / row / 2) * row + (i % row) / 2];
+      if (known < 0) {
+        known = static_cast<std::int16_t>(work.vertices.size());
+        work.vertices.push_back({work.points[point].place(), work.points[point].normal});
+      }
+      work.label_of[point] = known;
+    }
     work.labels.resize(work.vertices.size());
     sources_.labels.label({}, work.vertices, work.labels);
     if (sources_.colors == nullptr) return;
+    work.vertices.clear();
+    for (const SurfacePoint& p : work.points) work.vertices.push_back({p.place(), p.normal});
     work.colors.resize(work.vertices.size());
     sources_.colors->paint({}, work.vertices, work.colors);
   }
@@ -127,17 +146,18 @@ class MapBaker {
     maps_.normal[3 * i + 1] = byte_of_share(v.y);
     maps_.normal[3 * i + 2] = byte_of_share(v.z);
     heights_[i] = point.height;
-    open_[i] = static_cast<std::uint8_t>(
-        occlusion_.open_rays(tile.x + x, tile.y + y, point.place(), point.normal));
+    open_[i] = occlusion_.is_open(tile.x + x, tile.y + y, point.place(), point.normal) ? 1 : 0;
     maps_.curvature[i] = curvature_byte(work, at, static_cast<std::size_t>(tile.padded_width()));
-    maps_.label[i] = static_cast<std::uint8_t>(std::min(work.labels[number].label, 255));
+    const VertexLabel& label = work.labels[static_cast<std::size_t>(work.label_of[number])];
+    maps_.label[i] = static_cast<std::uint8_t>(std::min(label.label, 255));
     if (sources_.colors != nullptr) std::copy_n(work.colors[number].begin(), 3, &maps_.color[3 * i]);
     return point.is_found ? 0 : 1;
   }
 
   // Twice the mean curvature is the sum of those along both axes of the texture: dn . dp / |dp|^2.
   std::uint8_t curvature_byte(const TileWork& work, std::size_t at, std::size_t row) const {
-    const float sum = curvature_along(work, at - 1, at, at + 1) + curvature_along(work, at - row, at, at + row);
+    const float sum =
+        curvature_along(work, at - 1, at, at + 1) + curvature_along(work, at - row, at, at + row);
     const float share = 0.5f * sum * kTightestCurve * texel_;
     return static_cast<std::uint8_t>(128.0f + 127.0f * std::clamp(share, -1.0f, 1.0f) + 0.5f);
   }
@@ -187,9 +207,9 @@ class MapBaker {
   AtlasTexels texels_;
   TexelOcclusion occlusion_;
   BakedMaps maps_;
-  std::vector<float> heights_;       // length units
-  std::vector<std::uint8_t> open_;   // rays, or kNotCovered
-  std::vector<std::int64_t> missed_; // by tile
+  std::vector<float> heights_;        // length units
+  std::vector<std::uint8_t> open_;    // 1: the ray leaves the body; or kNotCovered
+  std::vector<std::int64_t> missed_;  // by tile
 };
 
 }  // namespace

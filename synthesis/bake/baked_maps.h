@@ -25,8 +25,8 @@ struct BakeSources {
   BakeOccluder occluder;
 };
 
-// The maps, row-major with the top row first, `side` texels wide and high. Texels beyond the borders of charts
-// show what a map has without detail.
+// The maps, row-major with the top row first, `side` texels wide and high. Texels beyond the borders of
+// charts show what a map has without detail.
 struct BakedMaps {
   int side = 0;
   // (x 3) Normals in the frame of tangent t, bitangent b and normal n as vertices have them, interpolated and
@@ -38,11 +38,11 @@ struct BakedMaps {
   std::vector<std::uint16_t> height;
   double lowest = 0.0, highest = 0.0;
   std::vector<std::uint8_t> occlusion;  // share of the sky that is open, weighted by the cosine; 255: all
-  // Mean curvature from the differences of normals of neighbouring texels: 128 is flat, 255 a bump and 1 a pit
-  // of radius `curvature_radius`, length units, or tighter.
+  // Mean curvature from the differences of normals of neighbouring texels: 128 is flat, 255 a bump and 1 a
+  // pit of radius `curvature_radius`, length units, or tighter.
   std::vector<std::uint8_t> curvature;
   double curvature_radius = 0.0;
-  std::vector<std::uint8_t> label;  // SurfaceLabels, 255 for all labels above
+  std::vector<std::uint8_t> label;  // SurfaceLabels, of 2 x 2 texels; 255 for all labels above
   std::vector<std::uint8_t> color;  // (x 3) sRGB; empty where no layer paints
   std::int64_t covered = 0;         // texels that show a place
   std::int64_t missed = 0;          // of them: those along whose normal no surface was met

@@ -1,6 +1,7 @@
 #include "synthesis/bake/texel_occlusion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -12,8 +13,8 @@
 namespace astrolith {
 namespace {
 
-// 64 directions about +z with the density of the cosine, in an order whose every sixteenth ones are spread
-// well: points of Hammersley's set on the disk, lifted to the sphere (Malley).
+// Directions about +z with the density of the cosine: points of Hammersley's set on the disk, lifted to the
+// sphere (Malley).
 std::vector<Vec3f> cosine_directions(int count) {
   std::vector<Vec3f> directions;
   for (int i = 0; i < count; ++i) {
@@ -31,33 +32,26 @@ std::vector<Vec3f> cosine_directions(int count) {
 TexelOcclusion::TexelOcclusion(const TriangleMesh& mesh, double cell)
     : scene_(mesh),
       offset_(static_cast<float>(0.75 * cell)),
-      directions_(cosine_directions(kRays * kPattern * kPattern)) {}
+      directions_(cosine_directions(kPattern * kPattern)) {}
 
-int TexelOcclusion::open_rays(int x, int y, const Vec3f& place, const Vec3f& normal) const {
-  constexpr std::size_t kGroups = kPattern * kPattern;
-  const auto group = static_cast<std::size_t>((y % kPattern) * kPattern + x % kPattern);
-  const Vec3f above = place + normal * offset_;
+bool TexelOcclusion::is_open(int x, int y, const Vec3f& place, const Vec3f& normal) const {
+  const auto number = static_cast<std::size_t>((y % kPattern) * kPattern + x % kPattern);
+  const Vec3f above = place + normal * offset_, &d = directions_[number];
   const Vec3f origin = to_float(scene_.to_unit({double{above.x}, double{above.y}, double{above.z}}));
-  const Tangents<float> frame =
-      duff_tangents<SumRounding::kTwice>(normal, std::copysign(1.0f, normal.z));
-  int open = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(kRays); ++k) {
-    const Vec3f& d = directions_[k * kGroups + group];
-    open += scene_.occluded(origin, frame.first * d.x + frame.second * d.y + normal * d.z) ? 0 : 1;
-  }
-  return open;
+  const Tangents<float> frame = duff_tangents<SumRounding::kTwice>(normal, std::copysign(1.0f, normal.z));
+  return !scene_.occluded(origin, frame.first * d.x + frame.second * d.y + normal * d.z);
 }
 
 std::vector<std::uint8_t> blurred_occlusion(std::span<const std::uint8_t> open, int side) {
   // Half weights at both ends give each place of the pattern the weight 1 along a row.
   constexpr int kReach = TexelOcclusion::kPattern / 2;
-  constexpr std::array<int, 5> kWeights{1, 2, 2, 2, 1};
+  constexpr std::array<int, 2 * kReach + 1> kWeights{1, 2, 2, 2, 2, 2, 2, 2, 1};
   std::vector<std::uint8_t> shares(open.size(), 255);
+  const auto at = [side](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+  };
   parallel_for(0, side, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
-    const auto at = [side](int x, int line) {
-      return static_cast<std::size_t>(line) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
-    };
     for (int x = 0; x < side; ++x) {
       if (open[at(x, y)] == kNotCovered) continue;
       int sum = 0, weights = 0;
@@ -70,8 +64,7 @@ std::vector<std::uint8_t> blurred_occlusion(std::span<const std::uint8_t> open, 
           sum += weight * value, weights += weight;
         }
       }
-      const int most = weights * TexelOcclusion::kRays;
-      shares[at(x, y)] = static_cast<std::uint8_t>((255 * sum + most / 2) / most);
+      shares[at(x, y)] = static_cast<std::uint8_t>((255 * sum + weights / 2) / weights);
     }
   });
   return shares;

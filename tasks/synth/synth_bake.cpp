@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr int kLeastMap = 64, kMostMap = 16384;
 // The image for which charts are padded where no maps are baked.
 constexpr int kUsualMap = 2048;
-constexpr std::array<const char*, 6> kMapWords{"normal", "height", "occlusion", "curvature", "label", "color"};
+constexpr std::array<const char*, 6> kMapWords{"normal",    "height", "occlusion",
+                                               "curvature", "label",  "color"};
 
 int side_of_level(const MeshRequest& request, std::size_t level) {
   const int side = request.bake > 0 ? request.bake : kUsualMap;
@@ -103,7 +104,8 @@ std::optional<SkinMap::Use> use_of(const std::string& word) {
   return std::nullopt;
 }
 
-void add_maps(Job& job, const SkinSources& sources, std::size_t level, const BakedMaps& maps, MeshSkin& skin) {
+void add_maps(Job& job, const SkinSources& sources, std::size_t level, const BakedMaps& maps,
+              MeshSkin& skin) {
   nlohmann::ordered_json figures = figures_of_maps(maps);
   auto files = nlohmann::ordered_json::object();
   for (EncodedMap& map : encoded_maps(maps)) {
@@ -118,10 +120,10 @@ void add_maps(Job& job, const SkinSources& sources, std::size_t level, const Bak
 }
 
 nlohmann::ordered_json figures_of_atlas(const TextureAtlas& atlas, const AtlasStretch& stretch) {
-  return {{"charts", atlas.places.size()},   {"side", atlas.side},
-          {"texel", atlas.texel},            {"padding", kChartPadding},
-          {"filled", stretch.filled},        {"stretch_mean", stretch.mean},
-          {"stretch_p99", stretch.p99},      {"stretch_largest", stretch.largest}};
+  return {{"charts", atlas.places.size()}, {"side", atlas.side},
+          {"texel", atlas.texel},          {"padding", kChartPadding},
+          {"filled", stretch.filled},      {"stretch_mean", stretch.mean},
+          {"stretch_p99", stretch.p99},    {"stretch_largest", stretch.largest}};
 }
 
 }  // namespace
@@ -133,7 +135,8 @@ void declare_bake_options(Job& job, MeshRequest& request) {
               "--uv", request.uv,
               "texture coordinates in a .glb or .obj. longitude, which --uv means by itself: u = 1/2 + "
               "longitude / 360 degrees, v from the north pole to the south; the 180th meridian cuts the "
-              "triangles that cross it. charts: an atlas of charts of one scale, none of which overlap, padded "
+              "triangles that cross it. charts: an atlas of charts of one scale, none of which overlap, "
+              "padded "
               "by 4 texels of a map of 2048, or of --bake")
           .check(one_of({"longitude", "charts"}))
           .implied("longitude")
@@ -159,16 +162,18 @@ void check_bake(const MeshRequest& request, const Recipe& recipe, const fs::path
   if (!request.has_charts()) throw InputError("--bake: maps lie on charts; add --uv charts");
   if (is_cut) throw InputError("--bake: is of the whole body; leave out --tile and --patch");
   if (recipe.erosion) {
-    throw InputError(file.string() +
-                     ": erosion: moves the mesh away from the layers that maps show; leave out --bake, or take "
-                     "erosion out of the recipe");
+    throw InputError(
+        file.string() +
+        ": erosion: moves the mesh away from the layers that maps show; leave out --bake, or take "
+        "erosion out of the recipe");
   }
 }
 
 std::vector<fs::path> map_files(const MeshRequest& request, const fs::path& output) {
   std::vector<fs::path> files;
   for (int level = 0; request.bake > 0 && level < request.levels; ++level) {
-    for (const char* word : kMapWords) files.push_back(map_file(output, static_cast<std::size_t>(level), word));
+    for (const char* word : kMapWords)
+      files.push_back(map_file(output, static_cast<std::size_t>(level), word));
   }
   return files;
 }

@@ -15,19 +15,18 @@ namespace astrolith {
 
 void declare_bake_options(Job& job, MeshRequest& request);
 
-// Throws InputError for maps without charts, of a part of a body, or of a recipe with erosion, which moves the
-// mesh away from its field.
+// Throws InputError for maps without charts, of a part of a body, or of a recipe with erosion, which moves
+// the mesh away from its field.
 void check_bake(const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file,
                 bool is_cut);
 
 // The maps that may be written beside the mesh: rock_normal.png, rock_lod1_normal.png, ...
-std::vector<std::filesystem::path> map_files(const MeshRequest& request,
-                                             const std::filesystem::path& output);
+std::vector<std::filesystem::path> map_files(const MeshRequest& request, const std::filesystem::path& output);
 
 // What the maps of a mesh are made from.
 struct SkinSources {
-  const BodyMeshJob& made_by;         // the finest mesh
-  const SurfaceColors* colors;        // null: no layer paints
+  const BodyMeshJob& made_by;   // the finest mesh
+  const SurfaceColors* colors;  // null: no layer paints
   const std::filesystem::path& output;
 };
 

@@ -44,10 +44,10 @@ struct MeshRequest {
   double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
-  std::string uv;                    // texture coordinates: "longitude" or "charts"; empty = none
-  int bake = 0;                      // side of the maps, texels; 0 = none
-  bool even = false;                 // triangles are made more even
-  int levels = 1;                    // of detail
+  std::string uv;     // texture coordinates: "longitude" or "charts"; empty = none
+  int bake = 0;       // side of the maps, texels; 0 = none
+  bool even = false;  // triangles are made more even
+  int levels = 1;     // of detail
   DeviceOption device;
 
   bool has_charts() const { return uv == "charts"; }
