@@ -1,4 +1,4 @@
-"""Bodies in other packages' terms: trimesh, PyVista, Open3D, PyTorch, xarray, GeoTIFF, SPICE.
+"""Bodies in other packages' terms: trimesh, PyVista, Open3D, PyTorch, xarray, GeoTIFF, SPICE, USD, SDF, URDF, MJCF.
 
 Nothing of these packages is loaded before a function needs it. Each is an optional extra, such as
 ``pip install astrolith[trimesh]``; a function whose package is missing raises an ImportError that says so.
@@ -6,6 +6,7 @@ Nothing of these packages is loaded before a function needs it. Each is an optio
 
 from __future__ import annotations
 
+from astrolith.bridges.collision import convex_parts, hull, write_model
 from astrolith.bridges.datasets import Bodies, torch_dataset
 from astrolith.bridges.finished_set import FinishedSet
 from astrolith.bridges.geo import to_xarray, write_geotiff
@@ -18,14 +19,17 @@ from astrolith.bridges.meshes import (
     to_trimesh,
 )
 from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
+from astrolith.bridges.usd import write_usd
 
 __all__ = [
     "Bodies",
     "FinishedSet",
     "Kernels",
+    "convex_parts",
     "from_open3d",
     "from_pyvista",
     "from_trimesh",
+    "hull",
     "to_open3d",
     "to_pyvista",
     "to_trimesh",
@@ -34,4 +38,6 @@ __all__ = [
     "write_dsk",
     "write_geotiff",
     "write_kernels",
+    "write_model",
+    "write_usd",
 ]

@@ -1,0 +1,102 @@
+"""Reads the .glb files that Astrolith writes: their levels, textures and material."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import struct
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from astrolith import _arrays
+from astrolith._arrays import PathLike
+
+_MAGIC, _JSON, _BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942
+_TYPES: dict[int, Any] = {5126: np.float32, 5125: np.uint32, 5123: np.uint16}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+
+
+@dataclasses.dataclass
+class Level:
+    """A mesh of the file in metres, with +z up, as the body's frame has it."""
+
+    name: str
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.uint32]
+    normals: Optional[npt.NDArray[np.float32]]
+    uv: Optional[npt.NDArray[np.float32]]  # from the image's top left corner
+    images: dict[str, bytes]  # PNG, by their use in the material: "normal", "occlusion", "color"
+
+
+class _File:
+    def __init__(self, file: PathLike) -> None:
+        self.name = _arrays.file_name(file, "glb")
+        try:
+            with open(self.name, "rb") as stream:
+                data = stream.read()
+            magic, _, _ = struct.unpack_from("<III", data, 0)
+            length, kind = struct.unpack_from("<II", data, 12)
+            if magic != _MAGIC or kind != _JSON:
+                raise struct.error
+            self.document = json.loads(data[20 : 20 + length])
+            self.binary = memoryview(data)[28 + length :]
+        except FileNotFoundError:
+            raise _arrays.MissingFileError(f"{self.name}: there is no such file") from None
+        except (struct.error, ValueError):
+            raise ValueError(f"{self.name}: is no .glb of synth; make one with synth -o NAME.glb") from None
+
+    def view(self, number: int) -> memoryview:
+        view = self.document["bufferViews"][number]
+        return self.binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+
+    def array(self, number: Optional[int]) -> Any:
+        if number is None:
+            return None
+        accessor = self.document["accessors"][number]
+        values = np.frombuffer(self.view(accessor["bufferView"]), _TYPES[accessor["componentType"]])
+        width = _WIDTHS[accessor["type"]]
+        return values.reshape(-1, width) if width > 1 else values
+
+    def images(self, material: dict[str, Any]) -> dict[str, bytes]:
+        textures = {
+            "normal": material.get("normalTexture"),
+            "occlusion": material.get("occlusionTexture"),
+            "color": material["pbrMetallicRoughness"].get("baseColorTexture"),
+        }
+        images = {}
+        for use, texture in textures.items():
+            if texture is not None:
+                source = self.document["textures"][texture["index"]]["source"]
+                images[use] = bytes(self.view(self.document["images"][source]["bufferView"]))
+        return images
+
+
+def read_levels(file: PathLike) -> list[Level]:
+    """The levels of detail of a .glb of ``synth``, the finest first.
+
+    Raises
+    ------
+    ValueError
+        The file is none of ``synth``. FileNotFoundError, which is one, too: there is no such file.
+    """
+    glb = _File(file)
+    levels = []
+    try:
+        for node in glb.document["nodes"]:
+            primitive = glb.document["meshes"][node["mesh"]]["primitives"][0]
+            attributes = primitive["attributes"]
+            levels.append(
+                Level(
+                    node["name"],
+                    glb.array(attributes["POSITION"]).astype(np.float64) * node["scale"][0],
+                    glb.array(primitive["indices"]).reshape(-1, 3),
+                    glb.array(attributes.get("NORMAL")),
+                    glb.array(attributes.get("TEXCOORD_0")),
+                    glb.images(glb.document["materials"][primitive["material"]]),
+                )
+            )
+    except (KeyError, IndexError, TypeError, ValueError):
+        raise ValueError(f"{glb.name}: is no .glb of synth; make one with synth -o NAME.glb") from None
+    return levels
