@@ -263,8 +263,8 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     file
         The file, whose extension chooses the format.
     uv
-        Texture coordinates in a .glb, by longitude and latitude; vertices along the 180th meridian are then there
-        twice.
+        Texture coordinates in a .glb or .obj, by longitude and latitude; the 180th meridian cuts the triangles that cross
+        it.
 
     Raises
     ------

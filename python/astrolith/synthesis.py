@@ -15,6 +15,7 @@ from astrolith._meshing import mesh, predict
 from astrolith._picture import render
 from astrolith._recipe import Recipe
 from astrolith._surface import SurfaceDescription, describe_surface, realism
+from astrolith._synth import synth
 from astrolith._texture import Texture, texture
 from astrolith._variation import Variation, vary
 
@@ -39,6 +40,7 @@ __all__ = [
     "read_mesh",
     "realism",
     "render",
+    "synth",
     "texture",
     "vary",
     "write_mesh",

@@ -294,4 +294,5 @@ NB_MODULE(_synthesis, module) {
   bind_products(module);
   bind_gravity(module);
   bind_height_maps(module);
+  bind_synth(module);
 }

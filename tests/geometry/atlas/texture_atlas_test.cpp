@@ -94,7 +94,9 @@ void expect_good_atlas(const TriangleMesh& mesh, int side) {
     int last = -1, since = 0;  // the last chart on the row, and how far back it was
     for (int x = 0; x < width; ++x, ++since) {
       if (at(x, y) < 0) continue;
-      if (last >= 0 && at(x, y) != last) ASSERT_GE(since, kApart) << x << " " << y;
+      if (last >= 0 && at(x, y) != last) {
+        ASSERT_GE(since, kApart) << x << " " << y;
+      }
       last = at(x, y), since = 0;
     }
   }

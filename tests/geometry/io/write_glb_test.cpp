@@ -139,7 +139,7 @@ TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
     ASSERT_LT(east - west, at_pole ? 0.5f : 0.2f) << t;
   }
   const TriangleMesh welded = weld_vertices(stored, 0.0);
-  EXPECT_TRUE(analyze_topology(welded).closed());
+  EXPECT_TRUE(analyze_topology(welded).closed);
   EXPECT_NEAR(volume(welded), volume(mesh), 1e-6);
 }
 

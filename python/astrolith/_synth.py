@@ -1,0 +1,56 @@
+"""The job of the program synth: files of meshes with levels, atlases and maps, of patches and of many members."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any
+
+from astrolith import _arrays, _jobs, _options, _synthesis
+from astrolith._options import Progress
+from astrolith._recipe import Record, RecipeLike, json_of
+
+_OPTIONS = _synthesis.options_of_synth()
+
+
+def synth(recipe: RecipeLike, *, threads: int = 0, progress: Progress = None, **options: Any) -> Record:
+    """Write what a recipe makes into files, as the program ``synth`` does; :func:`mesh` keeps a mesh in memory.
+
+    Parameters
+    ----------
+    recipe
+        A recipe, or the name of its file. Images that a recipe in memory names are looked for in the current folder.
+    threads
+        To use; 0: all.
+    progress
+        Called with the share done of a stage and a few words. Returning False ends the work.
+    {options}
+
+    Returns
+    -------
+    Record
+        The figures of the run, as ``--summary`` has them.
+
+    Raises
+    ------
+    ValueError
+        The recipe or an option is wrong, or options contradict each other.
+    RuntimeError
+        A file cannot be written, or `progress` returned False.
+    """
+    given = _jobs.words("synth", _OPTIONS, options)
+    workers = _options.threads(threads)
+    if _arrays.is_file_name(recipe):
+        given.append(("recipe", [_arrays.file_name(recipe, "recipe")]))
+        return _jobs.figures_of(_synthesis.synth(given, workers, progress))
+    descriptor, name = tempfile.mkstemp(suffix=".json", prefix=".recipe", dir=".")
+    try:
+        with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
+            stream.write(json_of(recipe)[0])
+        given.append(("recipe", [name]))
+        return _jobs.figures_of(_synthesis.synth(given, workers, progress))
+    finally:
+        os.remove(name)
+
+
+_jobs.document(synth, _OPTIONS)

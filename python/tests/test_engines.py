@@ -1,0 +1,161 @@
+"""Files of synth in the programs that they are made for, without windows. Programs and packages that are absent skip."""
+
+import json
+import shutil
+import subprocess
+
+import astrolith
+import numpy as np
+import pytest
+from astrolith import bridges
+
+RECIPE = {"format_version": 1, "length_unit": "km",
+          "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0.3, 0, 0, 1], [-0.8, 0, 0.2, 0.7]]},
+          "layers": [{"type": "perlin", "amplitude": 0.05, "frequency": 6.0}]}  # fmt: skip
+BLENDER = """
+import json, sys
+import numpy
+numpy.bool = bool  # Debian's importer of glTF asks for it
+import bpy
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_scene.gltf(filepath=sys.argv[-1])
+found = []
+for thing in bpy.context.scene.objects:
+    corners = [thing.matrix_world @ type(thing.location)(corner) for corner in thing.bound_box]
+    found.append({"name": thing.name, "faces": len(thing.data.polygons),
+                  "size": [max(c[k] for c in corners) - min(c[k] for c in corners) for k in range(3)],
+                  "materials": [m.name for m in thing.data.materials], "uv": len(thing.data.uv_layers)})
+images = [[image.name, image.size[0], image.colorspace_settings.name] for image in bpy.data.images]
+print("FOUND " + json.dumps({"things": found, "images": images}))
+"""
+GODOT = """
+extends SceneTree
+func _init():
+    var found = []
+    for thing in load("res://rock.glb").instance().get_children():
+        var size = thing.transform.xform(thing.mesh.get_aabb()).size
+        var material = thing.mesh.surface_get_material(0)
+        found.append({"name": thing.name, "faces": thing.mesh.surface_get_array_index_len(0) / 3,
+                      "size": [size.x, size.y, size.z], "normal": material.normal_texture.get_width(),
+                      "occlusion": material.ao_texture.get_width()})
+    print("FOUND " + to_json(found))
+    quit()
+"""
+
+
+@pytest.fixture(scope="module")
+def rock(tmp_path_factory):
+    """A .glb of two levels with maps, and the figures of the run."""
+    folder = tmp_path_factory.mktemp("rock")
+    recipe = folder / "r.json"
+    recipe.write_text(json.dumps(RECIPE))
+    file = folder / "rock.glb"
+    figures = astrolith.synth(recipe, output=file, resolution=32, uv="charts", bake=256, lod=2)
+    return file, figures
+
+
+def size_of(figures, file):
+    """The extent of the body in metres."""
+    levels = bridges._glb.read_levels(file)
+    return np.ptp(levels[0].vertices, axis=0)
+
+
+def found_in(done):
+    lines = [line for line in done.stdout.splitlines() if line.startswith("FOUND ")]
+    assert lines, done.stdout[-2000:] + done.stderr[-2000:]
+    return json.loads(lines[-1].removeprefix("FOUND "))
+
+
+def test_blender_has_axes_units_and_maps(rock, tmp_path):
+    if not shutil.which("blender"):
+        pytest.skip("Blender is not installed")
+    script = tmp_path / "look.py"
+    script.write_text(BLENDER)
+    found = found_in(subprocess.run(["blender", "--background", "--factory-startup", "--python", script, "--", rock[0]],
+                                    capture_output=True, text=True, timeout=300))  # fmt: skip
+    (thing,) = found["things"]
+    np.testing.assert_allclose(thing["size"], size_of(rock[1], rock[0]), rtol=1e-3)
+    assert thing["faces"] == rock[1].triangles and thing["materials"] == ["regolith"] and thing["uv"] == 1
+    assert ["rock_normal", 256, "Non-Color"] in found["images"] and ["rock_occlusion", 256, "Non-Color"] in found["images"]
+
+
+def test_godot_has_axes_units_and_maps(rock, tmp_path):
+    if not shutil.which("godot3-server"):
+        pytest.skip("Godot is not installed")
+    shutil.copy(rock[0], tmp_path / "rock.glb")
+    (tmp_path / "project.godot").write_text('[application]\nconfig/name="rock"\n')
+    (tmp_path / "look.gd").write_text(GODOT.replace("    ", "\t"))
+    environment = {"HOME": str(tmp_path), "PATH": "/usr/bin:/bin", "LANG": "en_US.UTF-8"}
+    run = lambda *words: subprocess.run(["godot3-server", "--path", tmp_path, *words], capture_output=True, text=True,
+                                        timeout=200, env=environment)  # fmt: skip
+    run("--editor", "--quit")
+    (thing,) = found_in(run("-s", "look.gd"))
+    x, y, z = size_of(rock[1], rock[0])
+    np.testing.assert_allclose(thing["size"], [x, z, y], rtol=1e-3)  # +y is up
+    assert thing["faces"] == rock[1].triangles and thing["normal"] == thing["occlusion"] == 256
+
+
+def test_trimesh_and_pygltflib_read_it(rock):
+    trimesh = pytest.importorskip("trimesh")
+    loaded = trimesh.load(rock[0])
+    names = sorted(loaded.geometry)
+    assert names[0].startswith("body")
+    pygltflib = pytest.importorskip("pygltflib")
+    document = pygltflib.GLTF2().load(str(rock[0]))
+    assert [image.name for image in document.images] == ["rock_normal", "rock_occlusion", "rock_lod1_normal", "rock_lod1_occlusion"]
+
+
+def test_usd_is_valid_and_has_levels_as_variants(rock, tmp_path):
+    usd = pytest.importorskip("pxr.Usd")
+    from pxr import UsdGeom, UsdShade
+
+    files = bridges.write_usd(rock[0], tmp_path / "rock.usda")
+    assert len(files) == 5
+    stage = usd.Stage.Open(files[0])
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0 and UsdGeom.GetStageUpAxis(stage) == "Z"
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/body/mesh"))
+    assert len(mesh.GetFaceVertexCountsAttr().Get()) == rock[1].triangles
+    assert UsdShade.MaterialBindingAPI(mesh).ComputeBoundMaterial()[0]
+    assert stage.GetDefaultPrim().GetVariantSet("lod").GetVariantNames() == ["lod0", "lod1"]
+    validation = pytest.importorskip("pxr.UsdValidation")
+    context = validation.ValidationContext(validation.ValidationRegistry().GetOrLoadAllValidators())
+    assert not context.Validate(stage)
+
+
+def test_a_model_has_mass_and_inertia_of_gravity(tmp_path):
+    pytest.importorskip("scipy")
+    body = astrolith.mesh(RECIPE, resolution=24)
+    hull = bridges.hull(body, 40)
+    assert len(hull.vertices) <= 40 and hull.length_unit == "km"
+    figures = astrolith.gravity(body, 2000.0).figures.body
+    for name in ("rock.sdf", "rock.urdf", "rock.xml"):
+        model, *meshes = bridges.write_model(tmp_path / name, body, 2000.0, parts=[hull])
+        text = open(model, encoding="utf-8").read()
+        assert f"{figures.mass_kg:.9g}" in text and len(meshes) == 2
+    seen = astrolith.read_mesh(tmp_path / "rock_visual.obj")
+    assert seen.length_unit == "m" and np.ptp(seen.vertices[:, 0]) == pytest.approx(1000 * np.ptp(body.vertices[:, 0]))
+    with pytest.raises(ValueError, match="is no .sdf"):
+        bridges.write_model(tmp_path / "rock.dae", body, 2000.0)
+    mujoco = pytest.importorskip("mujoco")
+    loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "rock.xml"))
+    assert loaded.body_mass[1] == pytest.approx(figures.mass_kg)
+    np.testing.assert_allclose(loaded.body_ipos[1], figures.center_of_mass_m, rtol=1e-5, atol=1e-3)
+
+
+def test_convex_parts_hold_the_body():
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("coacd")
+    body = astrolith.mesh(RECIPE, resolution=24)
+    parts = [bridges.to_trimesh(part) for part in bridges.convex_parts(body, threshold=0.2)]
+    assert all(part.is_watertight and part.is_convex and part.volume > 0 for part in parts)
+    assert sum(part.volume for part in parts) == pytest.approx(trimesh.Trimesh(body.vertices, body.faces).volume, rel=0.3)
+
+
+def test_other_files_are_refused(tmp_path):
+    (tmp_path / "a.glb").write_bytes(b"glTF and nothing else of it")
+    with pytest.raises(ValueError, match="is no .glb of synth"):
+        bridges._glb.read_levels(tmp_path / "a.glb")
+    with pytest.raises(FileNotFoundError):
+        bridges._glb.read_levels(tmp_path / "b.glb")
+    with pytest.raises(ValueError, match="is no .usda"):
+        bridges.write_usd(tmp_path / "a.glb", tmp_path / "a.txt")
