@@ -8,6 +8,7 @@ Exit status 77 says that selenium or Chromium is missing, so that nothing was te
 
 import hashlib
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -183,6 +184,17 @@ def check_link(page, address):
     check(link.startswith(address), f"a link leads elsewhere: {link[:80]}")
 
 
+def check_own_page(driver, synth, file):
+    """synth --page writes a page that opens with its recipe."""
+    with tempfile.TemporaryDirectory() as folder:
+        recipe = ROOT / "synthesis/examples/kernels.json"
+        subprocess.run([synth.program, str(recipe), "--seed", "7", "--page", folder, "--quiet"], check=True,
+                       env={**os.environ, "ASTROLITH_PAGE": str(file.resolve())})  # fmt: skip
+        page = Page(driver, (pathlib.Path(folder) / "index.html").as_uri())
+        page.settled()
+        check(page.recipe()["seed"] == 7, "a page of synth opens another recipe")
+
+
 def check_quiet(driver):
     errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
     check(not errors, f"the browser says: {errors}")
@@ -217,6 +229,7 @@ def main():
         check_refusal(page, synth)
         check_bad_file(page, synth)
         check_link(page, address)
+        check_own_page(driver, synth, file)
         check_quiet(driver)
     finally:
         driver.quit()

@@ -56,6 +56,12 @@ int status_of(const Work& work) {
 
 bool host_goes_on(double fraction, std::string_view) { return astrolith_host_goes_on(fraction) != 0; }
 
+// A recipe in the bytes of a file; no bytes are refused as require_plain_file() refuses an empty file.
+Recipe recipe_in(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw InputError(name + ": is empty; give another file");
+  return parse_recipe(bytes, name);
+}
+
 // Refuses a recipe whose layers name files, which no page has beside it.
 void require_own_pixels(const Recipe& recipe, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
@@ -99,7 +105,7 @@ std::vector<float> as_floats(const std::vector<Vec3d>& places) {
 void make(std::string_view text, const std::string& name, int resolution) {
   PageState& to = state();
   to.mesh = {};
-  const Recipe recipe = parse_recipe(text, name);
+  const Recipe recipe = recipe_in(text, name);
   require_own_pixels(recipe, name);
   const std::filesystem::path file = name;
   require_body(recipe, file);
@@ -138,7 +144,7 @@ void write_made_mesh(const std::string& format) {
 }
 
 void write_recipe_anew(std::string_view text, const std::string& name, const std::string& format) {
-  const Recipe recipe = parse_recipe(text, name);
+  const Recipe recipe = recipe_in(text, name);
   keep_written(format == "astro" ? recipe_to_compact(recipe) : recipe_to_json(recipe));
 }
 

@@ -157,6 +157,7 @@
       at("refusal").textContent = error.message;
       return false;
     }
+    at("examples").value = PAGE.examples.some(example => example.name === recipe.name) ? recipe.name : "";
     ["layers", "layers[0]"].forEach(form.open);
     if (view) view.refit();
     form.rebuild();
@@ -167,8 +168,12 @@
   const openFile = async file => openBytes(new Uint8Array(await file.arrayBuffer()), file.name);
   const openExample = example => openText(example.text, example.name);
 
-  for (const example of PAGE.examples) at("examples").append(new Option(example.name.replace(/\.json$/, "").replace(/_/g, " "), example.name));
-  at("examples").onchange = () => openExample(PAGE.examples.find(example => example.name === at("examples").value));
+  at("examples").append(new Option("own recipe", ""));
+  for (const {name} of PAGE.examples) at("examples").append(new Option(name.replace(".json", "").replace(/_/g, " "), name));
+  at("examples").onchange = () => {
+    const example = PAGE.examples.find(({name}) => name === at("examples").value);
+    if (example) openExample(example);
+  };
   at("file").onchange = () => at("file").files[0] && openFile(at("file").files[0]);
   document.ondragover = event => { event.preventDefault(); document.body.classList.add("dropping"); };
   document.ondragleave = () => document.body.classList.remove("dropping");
@@ -261,7 +266,6 @@
     if (given) return openBytes(bytesOf(given[1].replace(/-/g, "+").replace(/_/g, "/")), "link.astro");
     const own = JSON.parse(at("recipe").textContent);
     if (own) return openBytes(bytesOf(own.bytes), own.name);
-    at("examples").value = PAGE.first;
     return openExample(PAGE.examples.find(example => example.name === PAGE.first));
   }
   window.onhashchange = openFirst;
