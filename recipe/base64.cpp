@@ -17,7 +17,7 @@ constexpr std::array<unsigned char, 256> make_values() {
     values[static_cast<unsigned char>(kDigits[i])] = static_cast<unsigned char>(i);
   return values;
 }
-constexpr std::array<unsigned char, 256> kValues = make_values();
+constexpr std::array<unsigned char, 256> kDigitValues = make_values();
 
 std::uint32_t byte_at(std::string_view bytes, std::size_t i) {
   return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
@@ -46,7 +46,7 @@ std::optional<std::string> base64_bytes(std::string_view text) {
     std::uint32_t group = 0;
     for (std::size_t k = i; k < i + 4; ++k) {
       const std::uint32_t digit =
-          k < text.size() - padding ? kValues[static_cast<unsigned char>(text[k])] : 0;
+          k < text.size() - padding ? kDigitValues[static_cast<unsigned char>(text[k])] : 0;
       if (digit == kNoDigit) return {};
       group = group << 6 | digit;
     }

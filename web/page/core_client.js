@@ -20,8 +20,10 @@ class CoreClient {
       if (data.fraction !== undefined) return this.onfraction(data.fraction);
       const {resolve, reject} = this.waiting.get(data.id);
       this.waiting.delete(data.id);
-      if (data.error) reject(Object.assign(new Error(data.error.message), {status: data.error.status}));
-      else resolve(data.result);
+      if (!data.error) return resolve(data.result);
+      const error = Object.assign(new Error(data.error.message), {status: data.error.status});
+      reject(error);
+      if (error.status === undefined) this.fail(error);  // a trap: the module is not to be used again
     };
     worker.onerror = event => this.fail(new Error(event.message || "the core stopped"));
     return worker;
