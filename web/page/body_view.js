@@ -59,7 +59,8 @@ class BodyView {
     if (!turn && !zoom) return;
     event.preventDefault();
     // The camera looks at 0, about which its place turns.
-    const place = new THREE.Spherical().setFromVector3(new THREE.Vector3(this.camera.position.x, this.camera.position.z, -this.camera.position.y));
+    const {x, y, z} = this.camera.position;
+    const place = new THREE.Spherical().setFromVector3(new THREE.Vector3(x, z, -y));
     if (turn) {
       place.theta += 0.1 * turn[0];
       place.phi = Math.min(Math.max(place.phi + 0.1 * turn[1], 0.05), Math.PI - 0.05);

@@ -253,12 +253,18 @@
   at("stop").onclick = () => client.stop();
   const tellCells = () => { at("cells").textContent = finest(); };
   at("resolution").oninput = () => { tellCells(); draw(); };
-  for (const id of ["azimuth", "height"]) at(id).oninput = () => view && view.setSun(Number(at("azimuth").value), Number(at("height").value));
+  const turnSun = () => view && view.setSun(Number(at("azimuth").value), Number(at("height").value));
+  at("azimuth").oninput = at("height").oninput = turnSun;
   tellCells();
   client.call("version").then(version => { at("version").textContent = `Astrolith ${version}.`; });
 
   // For whoever drives the page by a script: tests, and other pages.
-  window.astrolith = {openText, settled, meshFile, recipeText: () => recipe.text(), link, setCells: cells => { at("resolution").value = cells; tellCells(); return draw(); }};
+  const setCells = cells => {
+    at("resolution").value = cells;
+    tellCells();
+    return draw();
+  };
+  window.astrolith = {openText, settled, meshFile, recipeText: () => recipe.text(), link, setCells};
 
   // The recipe of the link, that of the page, or the first example.
   async function openFirst() {

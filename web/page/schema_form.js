@@ -42,7 +42,9 @@ function schemaForm(container, values, editing) {
     const from = t => range.log ? range.low * Math.pow(range.high / range.low, t) : range.low + t * (range.high - range.low);
     const whole = node.type === "integer";
     const steps = whole ? range.high - range.low : 400;
-    const made = element("input", {type: "range", min: 0, max: steps, step: 1, value: Math.round(at(value) * steps), ariaLabel: pathText(path)});
+    const made = element("input", {
+      type: "range", min: 0, max: steps, step: 1, value: Math.round(at(value) * steps), ariaLabel: pathText(path),
+    });
     made.oninput = () => {
       const v = from(made.value / steps);
       take(whole ? Math.round(v) : Number(v.toPrecision(4)), "slide " + pathText(path));
@@ -54,7 +56,9 @@ function schemaForm(container, values, editing) {
 
   function numberField(path, node, value) {
     const whole = node.type === "integer";
-    const box = element("input", {type: "text", inputMode: whole ? "numeric" : "decimal", value: recipeText.digits(value), ariaLabel: pathText(path), className: "number"});
+    const box = element("input", {
+      type: "text", inputMode: whole ? "numeric" : "decimal", value: recipeText.digits(value), ariaLabel: pathText(path), className: "number",
+    });
     const made = slider(path, node, Number(recipeText.digits(value)), (v, gesture) => {
       box.value = v;
       change(path, v, gesture);
@@ -97,7 +101,8 @@ function schemaForm(container, values, editing) {
   }
 
   function switchField(path, value) {
-    return element("input", {type: "checkbox", checked: value, ariaLabel: pathText(path), onchange: event => change(path, event.target.checked)});
+    const onchange = event => change(path, event.target.checked);
+    return element("input", {type: "checkbox", checked: value, ariaLabel: pathText(path), onchange});
   }
 
   function rowField(path, node, value) {
@@ -114,9 +119,12 @@ function schemaForm(container, values, editing) {
     }));
   }
 
-  const isRow = node => node.type === "array" && node.minItems === node.maxItems && values.resolved(node.items).type === "number" && node.maxItems <= 6;
+  const isRow = node => node.type === "array" && node.minItems === node.maxItems && node.maxItems <= 6 &&
+    values.resolved(node.items).type === "number";
   const isGroup = node => (node.type === "object" && node.properties !== undefined);
-  const isList = node => node.type === "array" && !isRow(node) && (isGroup(values.resolved(node.items)) || isRow(values.resolved(node.items)) || values.kindsOf(node.items).length > 0);
+  const hasParts = node => isGroup(node) || isRow(node);
+  const isList = node => node.type === "array" && !isRow(node) &&
+    (hasParts(values.resolved(node.items)) || values.kindsOf(node.items).length > 0);
 
   function valueField(path, node, value) {
     if (node.enum) return chooser(path, node.enum, value, path[path.length - 1] === "type");
@@ -140,10 +148,12 @@ function schemaForm(container, values, editing) {
     fields.set(pathText(path), holder);
     const name = element("span", {className: "name", textContent: key});
     if (value === undefined) {
-      holder.append(element("div", {className: "head"}, name, button("add", `add ${key}`, stop(() => editing.set(path, values.fresh(node))))), meaning(node));
+      const add = button("add", `add ${key}`, stop(() => editing.set(path, values.fresh(node))));
+      holder.append(element("div", {className: "head"}, name, add), meaning(node));
       return holder;
     }
-    const back = required || given === undefined ? null : button("×", `back to what ${key} is without being stated`, stop(() => editing.set(path, undefined)));
+    const back = required || given === undefined ? null
+      : button("×", `back to what ${key} is without being stated`, stop(() => editing.set(path, undefined)));
     holder.append(element("div", {className: "head"}, name, valueField(path, node, value), back), meaning(node));
     return holder;
   }
@@ -244,7 +254,9 @@ function schemaForm(container, values, editing) {
   }
 
   function rowItem(path, node, value, count) {
-    const holder = element("div", {className: "field"}, element("div", {className: "head"}, element("span", {className: "name", textContent: path[path.length - 1] + 1}), rowField(path, node, value), ...itemButtons(path, count)));
+    const number = element("span", {className: "name", textContent: path[path.length - 1] + 1});
+    const head = element("div", {className: "head"}, number, rowField(path, node, value), ...itemButtons(path, count));
+    const holder = element("div", {className: "field"}, head);
     fields.set(pathText(path), holder);
     return holder;
   }
