@@ -24,9 +24,9 @@ TextureSlope texture_slope(const std::array<Vec3d, 3>& p, const std::array<Textu
   return {sign * (v2 * (p[1] - p[0]) - v1 * (p[2] - p[0])), sign};
 }
 
-Vec3d in_plane(const Vec3d& v, const Vec3d& normal) { return v - dot(v, normal) * normal; }
+Vec3d along_plane(const Vec3d& v, const Vec3d& normal) { return v - dot(v, normal) * normal; }
 
-double angle_between(const Vec3d& a, const Vec3d& b) { return portable::atan2(norm(cross(a, b)), dot(a, b)); }
+double corner_angle(const Vec3d& a, const Vec3d& b) { return portable::atan2(norm(cross(a, b)), dot(a, b)); }
 
 }  // namespace
 
@@ -41,16 +41,16 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
     const TextureSlope slope = texture_slope(p, uv);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d& normal = mesh.normals[coordinates.vertex_of[t[k]]];
-      const Vec3d next = in_plane(p[(k + 1) % 3] - p[k], normal),
-                  last = in_plane(p[(k + 2) % 3] - p[k], normal);
-      sums[t[k]] += angle_between(next, last) * normalized(in_plane(slope.along_u, normal));
+      const Vec3d next = along_plane(p[(k + 1) % 3] - p[k], normal),
+                  last = along_plane(p[(k + 2) % 3] - p[k], normal);
+      sums[t[k]] += corner_angle(next, last) * normalized(along_plane(slope.along_u, normal));
       signs[t[k]] = static_cast<float>(slope.sign);
     }
   }
   std::vector<VertexTangent> tangents(sums.size());
   for (std::size_t w = 0; w < sums.size(); ++w) {
     const Vec3d& normal = mesh.normals[coordinates.vertex_of[w]];
-    Vec3d tangent = normalized(in_plane(sums[w], normal));
+    Vec3d tangent = normalized(along_plane(sums[w], normal));
     if (!(squared_norm(tangent) > 0.0)) tangent = crossed_tangents(normal).first;
     const Vec3f t = to_float(tangent);
     tangents[w] = {t.x, t.y, t.z, signs[w]};

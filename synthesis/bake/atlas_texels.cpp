@@ -12,7 +12,7 @@ struct TexelPoint {
   double x, y;
 };
 
-std::array<TexelPoint, 3> corners_of(const TextureAtlas& atlas, std::uint32_t triangle) {
+std::array<TexelPoint, 3> texel_corners(const TextureAtlas& atlas, std::uint32_t triangle) {
   std::array<TexelPoint, 3> corners{};
   for (std::size_t k = 0; k < 3; ++k) {
     const TexturePoint& uv = atlas.coordinates.uv[atlas.coordinates.triangles[triangle][k]];
@@ -33,7 +33,7 @@ TexelRange range_of(const std::array<TexelPoint, 3>& c) {
           last(std::max({c[0].x, c[1].x, c[2].x})), last(std::max({c[0].y, c[1].y, c[2].y}))};
 }
 
-double turn(const TexelPoint& a, const TexelPoint& b, double x, double y) {
+double texel_turn(const TexelPoint& a, const TexelPoint& b, double x, double y) {
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
 
@@ -64,7 +64,7 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
   // A triangle belongs to the tiles that its box reaches, with their borders.
   const auto for_each_tile_of = [&](std::uint32_t f, const auto& use) {
     const ChartTiles& chart = charts[atlas.chart_of[f]];
-    const TexelRange range = range_of(corners_of(atlas, f));
+    const TexelRange range = range_of(texel_corners(atlas, f));
     const auto tile_of = [](int texel, int begin, int count) {
       return std::clamp((texel - begin) / TexelTile::kSide, 0, count - 1);
     };
@@ -94,8 +94,8 @@ void AtlasTexels::places_of(const TexelTile& tile, std::span<TexelPlace> places)
 }
 
 void AtlasTexels::draw(std::uint32_t triangle, const TexelTile& tile, std::span<TexelPlace> places) const {
-  const std::array<TexelPoint, 3> c = corners_of(textured_.atlas, triangle);
-  const double area = turn(c[0], c[1], c[2].x, c[2].y);
+  const std::array<TexelPoint, 3> c = texel_corners(textured_.atlas, triangle);
+  const double area = texel_turn(c[0], c[1], c[2].x, c[2].y);
   if (area == 0.0) return;
   const TexelRange range = range_of(c);
   const Triangle& corners = textured_.atlas.coordinates.triangles[triangle];
@@ -105,8 +105,9 @@ void AtlasTexels::draw(std::uint32_t triangle, const TexelTile& tile, std::span<
           places[static_cast<std::size_t>((y - tile.y + 1) * tile.padded_width() + x - tile.x + 1)];
       if (place.is_covered) continue;
       const double px = x + 0.5, py = y + 0.5;
-      const std::array<double, 3> weights{turn(c[1], c[2], px, py) / area, turn(c[2], c[0], px, py) / area,
-                                          turn(c[0], c[1], px, py) / area};
+      const std::array<double, 3> weights{texel_turn(c[1], c[2], px, py) / area,
+                                          texel_turn(c[2], c[0], px, py) / area,
+                                          texel_turn(c[0], c[1], px, py) / area};
       if (std::min({weights[0], weights[1], weights[2]}) < 0.0) continue;
       Vec3d position, normal, tangent;
       for (std::size_t k = 0; k < 3; ++k) {

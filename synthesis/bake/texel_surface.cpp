@@ -28,7 +28,7 @@ void add_place(TexelBatch& batch, const SurfacePoint& point) {
 }
 
 // A point on its way. The surface is sought up to `limit` from the start.
-struct Seeker {
+struct TexelSeeker {
   std::uint16_t number;
   float height, value;  // F there
   float before = 0.0f, value_before = 0.0f;
@@ -113,7 +113,7 @@ class SurfaceSearch {
     // Where F changes by less than the distance, as on steep flanks, the way is longer than |F|.
     reach(3.0f * farthest + 2.0f * texel_);
     for (int k = 0; k < kMostSecants && !seekers_.empty(); ++k) take_steps();
-    for (const Seeker& s : seekers_) points_[s.number].height = s.best;
+    for (const TexelSeeker& s : seekers_) points_[s.number].height = s.best;
     seekers_.clear();
     take_normals(numbers, kArrived);
   }
@@ -139,7 +139,7 @@ class SurfaceSearch {
       point.height = 0.0f;
       point.is_found = std::fabs(value) <= kArrived * texel_;
       if (point.is_found) continue;
-      Seeker s{numbers[k], value, value};
+      TexelSeeker s{numbers[k], value, value};
       s.value_before = value, s.least = std::fabs(value);
       seekers_.push_back(s);
     }
@@ -148,7 +148,7 @@ class SurfaceSearch {
 
   void take_steps() {
     batch_.clear();
-    for (Seeker& s : seekers_) {
+    for (TexelSeeker& s : seekers_) {
       s.height = std::clamp(s.height, -limit_, limit_);
       points_[s.number].height = s.height;
       add_place(batch_, points_[s.number]);
@@ -156,7 +156,7 @@ class SurfaceSearch {
     batch_.evaluate(block_);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < seekers_.size(); ++i) {
-      Seeker s = seekers_[i];
+      TexelSeeker s = seekers_[i];
       s.value = batch_.value(i);
       if (std::fabs(s.value) < s.least) s.least = std::fabs(s.value), s.best = s.height;
       points_[s.number].is_found = std::fabs(s.value) <= kArrived * texel_;
@@ -169,7 +169,7 @@ class SurfaceSearch {
 
   // A step of the secant; where F does not fall outwards, as at an overhang, a step of |F| towards the
   // outside of what is inside.
-  static void go_on(Seeker& s) {
+  static void go_on(TexelSeeker& s) {
     constexpr float kLeastSlope = 0.15f;
     const float way = s.height - s.before;
     const float slope = way != 0.0f ? (s.value_before - s.value) / way : 1.0f;
@@ -219,7 +219,7 @@ class SurfaceSearch {
   TexelGrid grid_;
   std::span<SurfacePoint> points_;
   FieldBlock block_;
-  std::vector<Seeker> seekers_;
+  std::vector<TexelSeeker> seekers_;
   TexelBatch batch_;
 };
 

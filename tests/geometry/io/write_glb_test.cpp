@@ -132,8 +132,8 @@ TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
   for (const Vec3f& p : positions) stored.vertices.push_back({p.x, p.y, p.z});
   for (std::size_t t = 0; t < indices.size(); t += 3) {
     stored.triangles.push_back({indices[t], indices[t + 1], indices[t + 2]});
-    const auto [west, east] = std::minmax(
-        {texcoords[indices[t]][0], texcoords[indices[t + 1]][0], texcoords[indices[t + 2]][0]});
+    const auto [west, east] =
+        std::minmax({texcoords[indices[t]][0], texcoords[indices[t + 1]][0], texcoords[indices[t + 2]][0]});
     const Vec3d& corner = stored.vertices[indices[t]];
     const bool at_pole = std::hypot(corner.x, corner.y) < 0.2;
     ASSERT_LT(east - west, at_pole ? 0.5f : 0.2f) << t;
