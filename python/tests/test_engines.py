@@ -54,7 +54,7 @@ def rock(tmp_path_factory):
     return file, figures
 
 
-def size_of(figures, file):
+def size_of(file):
     """The extent of the body in metres."""
     levels = bridges._glb.read_levels(file)
     return np.ptp(levels[0].vertices, axis=0)
@@ -73,9 +73,11 @@ def test_blender_has_axes_units_and_maps(rock, tmp_path):
     script.write_text(BLENDER)
     found = found_in(subprocess.run(["blender", "--background", "--factory-startup", "--python", script, "--", rock[0]],
                                     capture_output=True, text=True, timeout=300))  # fmt: skip
-    (thing,) = found["things"]
-    np.testing.assert_allclose(thing["size"], size_of(rock[1], rock[0]), rtol=1e-3)
-    assert thing["faces"] == rock[1].triangles and thing["materials"] == ["regolith"] and thing["uv"] == 1
+    thing, coarser = sorted(found["things"], key=lambda thing: thing["name"])  # of both levels, at one place
+    assert coarser["name"] == "body_lod1" and coarser["faces"] == rock[1].levels[1].triangles
+    np.testing.assert_allclose(thing["size"], size_of(rock[0]), rtol=1e-3)
+    np.testing.assert_allclose(coarser["size"], size_of(rock[0]), rtol=0.1)
+    assert thing["faces"] == rock[1].triangles and thing["materials"][0].startswith("regolith") and thing["uv"] == 1
     assert ["rock_normal", 256, "Non-Color"] in found["images"] and ["rock_occlusion", 256, "Non-Color"] in found["images"]
 
 
@@ -89,8 +91,9 @@ def test_godot_has_axes_units_and_maps(rock, tmp_path):
     run = lambda *words: subprocess.run(["godot3-server", "--path", tmp_path, *words], capture_output=True, text=True,
                                         timeout=200, env=environment)  # fmt: skip
     run("--editor", "--quit")
-    (thing,) = found_in(run("-s", "look.gd"))
-    x, y, z = size_of(rock[1], rock[0])
+    thing, coarser = sorted(found_in(run("-s", "look.gd")), key=lambda thing: thing["name"])
+    assert coarser["name"] == "body_lod1" and coarser["normal"] == 128
+    x, y, z = size_of(rock[0])
     np.testing.assert_allclose(thing["size"], [x, z, y], rtol=1e-3)  # +y is up
     assert thing["faces"] == rock[1].triangles and thing["normal"] == thing["occlusion"] == 256
 
