@@ -80,8 +80,8 @@ class MeridianCut {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
       if (sides[k] != 0.0 || !passes_axis(a, b)) continue;
       const std::uint32_t pole = add_on_edge(a, b, true);
-      out.push_back({a, pole, c});
-      out.push_back({pole, b, c});
+      cut_at_axis({a, pole, c}, out);
+      cut_at_axis({pole, b, c}, out);
       return;
     }
     out.push_back(t);

@@ -117,10 +117,14 @@ std::array<double, 2> singular_values(const std::array<Vec3d, 3>& p, const std::
 
 }  // namespace
 
-TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name) {
+TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name, int most_side) {
   const SurfaceCharts charts = surface_charts(mesh);
   const ChartExtents extents = extents_of(mesh, charts);
   AtlasLayout layout = largest_layout(extents, side, 1.0 / mean_edge(mesh));
+  while (layout.places.empty() && 2 * side <= most_side) {
+    side *= 2;
+    layout = largest_layout(extents, side, 1.0 / mean_edge(mesh));
+  }
   if (layout.places.empty()) {
     throw InputError(name + ": " + std::to_string(charts.axis_of.size()) + " charts of " +
                      std::to_string(mesh.triangles.size()) + " triangles do not fit into " +

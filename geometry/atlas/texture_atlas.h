@@ -23,11 +23,12 @@ struct TextureAtlas {
   double texel = 0.0;  // side of a texel where the surface faces its chart's axis, length units of the mesh
 };
 
-// Lays the charts of surface_charts() out in an image of side x side texels, as large as they fit. All charts
-// have one scale. A textured vertex at (x, y) texels from the image's top left corner has u = x / side and v
-// = y / side. Throws InputError, which begins with `name`, where the charts do not fit with a texel for each
-// mean edge.
-TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name);
+// Lays the charts of surface_charts() out in an image of side x side texels, as large as they fit; where they
+// do not, the side is doubled up to `most_side`. All charts have one scale. A textured vertex at (x, y)
+// texels from the image's top left corner has u = x / side and v = y / side. Throws InputError, which begins
+// with `name`, where the charts do not fit with a texel for each mean edge.
+TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name,
+                                int most_side = 0);
 
 // How an atlas distorts: the ratio of the singular values of each triangle's map from the surface to the
 // image, 1 for none. Triangles without area are left out.

@@ -9,10 +9,11 @@
 namespace astrolith {
 namespace {
 
-// The derivative of position by u over a triangle, times a positive number, and the handedness.
+// The derivative of position by u over a triangle, times a positive number, and twice the area of its image,
+// negative for a mirrored one.
 struct TextureSlope {
   Vec3d along_u;
-  double sign;
+  double area;
 };
 
 TextureSlope texture_slope(const std::array<Vec3d, 3>& p, const std::array<TexturePoint, 3>& t) {
@@ -21,7 +22,7 @@ TextureSlope texture_slope(const std::array<Vec3d, 3>& p, const std::array<Textu
   const double v1 = double{t[0][1]} - t[1][1], v2 = double{t[0][1]} - t[2][1];
   const double area = u1 * v2 - u2 * v1;
   const double sign = area < 0.0 ? -1.0 : 1.0;
-  return {sign * (v2 * (p[1] - p[0]) - v1 * (p[2] - p[0])), sign};
+  return {sign * (v2 * (p[1] - p[0]) - v1 * (p[2] - p[0])), area};
 }
 
 Vec3d along_plane(const Vec3d& v, const Vec3d& normal) { return v - dot(v, normal) * normal; }
@@ -32,7 +33,7 @@ double corner_angle(const Vec3d& a, const Vec3d& b) { return portable::atan2(nor
 
 std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const TextureCoordinates& coordinates) {
   std::vector<Vec3d> sums(coordinates.uv.size());
-  std::vector<float> signs(coordinates.uv.size(), 1.0f);
+  std::vector<double> areas(coordinates.uv.size());  // slivers, whose sign is that of rounding, count little
   for (const Triangle& t : coordinates.triangles) {
     std::array<Vec3d, 3> p;
     std::array<TexturePoint, 3> uv;
@@ -44,7 +45,7 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
       const Vec3d next = along_plane(p[(k + 1) % 3] - p[k], normal),
                   last = along_plane(p[(k + 2) % 3] - p[k], normal);
       sums[t[k]] += corner_angle(next, last) * normalized(along_plane(slope.along_u, normal));
-      signs[t[k]] = static_cast<float>(slope.sign);
+      areas[t[k]] += slope.area;
     }
   }
   std::vector<VertexTangent> tangents(sums.size());
@@ -53,7 +54,7 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
     Vec3d tangent = normalized(along_plane(sums[w], normal));
     if (!(squared_norm(tangent) > 0.0)) tangent = crossed_tangents(normal).first;
     const Vec3f t = to_float(tangent);
-    tangents[w] = {t.x, t.y, t.z, signs[w]};
+    tangents[w] = {t.x, t.y, t.z, areas[w] < 0.0 ? -1.0f : 1.0f};
   }
   return tangents;
 }

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import difflib
 import re
-import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Optional, Union
 
 import numpy.typing as npt
 
 from astrolith import _arrays
-from astrolith._mesh import MeshLike, arrays_of, unit_of
+from astrolith._mesh import MeshLike, _warn, arrays_of, unit_of
 from astrolith._recipe import Record, records
 
 GivenOptions = list[tuple[str, list[str]]]
@@ -62,7 +61,7 @@ def figures_of(text: str) -> Record:
     figures: Record = records(text)
     for line in figures["remarks"]:
         if line.startswith("note: "):
-            warnings.warn(line[6:], stacklevel=4)
+            _warn(line[6:])
     return figures
 
 

@@ -205,12 +205,14 @@ class SurfaceSearch {
       mean += 0.25f * value;
     }
     const float length = norm(gradient);
-    p.normal = length > 0.0f ? gradient * (-1.0f / length) : p.along;
-    if (!p.is_found) return;
     constexpr float kLeastFall = 0.25f;
     const float fall = -dot(gradient, p.along) / (4.0f * h);
     const float step = mean / std::max(fall, kLeastFall), most = longest * texel_;
-    if (longest == kGuessed) p.is_found = std::fabs(step) <= most && fall >= kLeastFall;
+    // Where F rises outwards the point lies on the far side of a thin wall, or under an overhang.
+    p.is_found = p.is_found && fall > 0.0f;
+    if (longest == kGuessed) p.is_found = p.is_found && std::fabs(step) <= most && fall >= kLeastFall;
+    p.normal = p.is_found ? gradient * (-1.0f / length) : p.along;
+    if (!p.is_found) return;
     p.height += std::clamp(step, -most, most);
   }
 

@@ -8,9 +8,7 @@
 namespace astrolith {
 
 // evaluate_metaballs() at the points origin + (x, y, z), computed in double precision and rounded to float.
-// Its digits do not depend on the ratio of the distance between points to the size of the body. exp and log
-// come from the C library, whose last bit is not fixed: one result in 10^8 may differ by one bit between
-// libraries.
+// Its digits do not depend on the ratio of the distance between points to the size of the body.
 void evaluate_local_metaballs(const MetaballsView& metaballs, const Vec3d& origin, int n, const float* x,
                               const float* y, const float* z, float* distance, float* gradient_x,
                               float* gradient_y, float* gradient_z);

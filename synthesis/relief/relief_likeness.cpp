@@ -58,26 +58,24 @@ BandRms typical_rms(const ReliefPoints& points, const BandHeights& bands, double
   return rms;
 }
 
+BandHeights values_of(const ReliefValues& blend, BandHeights bands) {
+  for (std::vector<double>& band : bands) band = blend.values_of(band);
+  return bands;
+}
+
 // Coefficients of what has been laid, with bands as strong as those that were measured: seams take from each
-// a share of its own.
+// a share of its own. The bands are those of the sum, since what was laid in several bands no longer agrees.
 std::vector<double> equalized(const ReliefPoints& points, const ReliefValues& blend,
                               const std::vector<LaidHeights>& laid, const BandRms& wants, double edge,
                               bool seen_alone) {
   constexpr double kMostGain = 2.0;
-  BandHeights bands;
-  for (std::size_t b = 0; b < kReliefBands; ++b) {
-    for (const LaidHeights& place : laid) bands[b].push_back(double{place.height[b]});
-  }
-  const BandRms has = typical_rms(points, bands, edge, seen_alone);
-  std::vector<double> sum(points.size(), 0.0);
+  std::vector<double> sum;
+  for (const LaidHeights& place : laid) sum.push_back(place.sum());
+  ReliefBands bands(points, blend.coefficients_of(sum), edge);
+  const BandRms has = typical_rms(points, values_of(blend, bands.bands), edge, seen_alone);
   for (std::size_t b = 0; b < kReliefBands; ++b)
-    add(bands[b], sum, has[b] > 0.0 ? std::min(wants[b] / has[b], kMostGain) : 1.0);
-  return blend.coefficients_of(sum);
-}
-
-BandHeights values_of(const ReliefValues& blend, BandHeights bands) {
-  for (std::vector<double>& band : bands) band = blend.values_of(band);
-  return bands;
+    add(bands.bands[b], bands.rest, has[b] > 0.0 ? std::min(wants[b] / has[b], kMostGain) : 1.0);
+  return std::move(bands.rest);
 }
 
 ReliefValues measured_blend(const ReliefPatches& patches, double spacing) {

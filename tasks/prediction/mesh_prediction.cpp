@@ -37,6 +37,9 @@ constexpr double kErosionTables = 90.0;
 // The picture, and facets, nodes and multipoles of gravity with its eight columns at half a vertex.
 constexpr double kPicture = 120.0, kGravityTables = 240.0;
 
+// A texel of six maps with their floats, their borders and their files.
+constexpr double kMapTexel = 22.0;
+
 // What is done with a mesh, for each triangle.
 struct UseBytes {
   double file, memory;
@@ -184,7 +187,8 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
   give_back_freed_memory();
   const double even = mesh.use.even ? estimate.triangles : 0.0;
   const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
-                         kRecorded * even + bricks.bytes + use.memory * estimate.triangles;
+                         kRecorded * even + bricks.bytes + use.memory * estimate.triangles +
+                         kMapTexel * mesh.use.map_side * mesh.use.map_side;
   MeshPrediction predicted;
   predicted.resolution = estimate.resolution;
   predicted.triangles = estimate.triangles;

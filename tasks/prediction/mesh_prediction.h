@@ -19,6 +19,7 @@ struct MeshUse {
   bool labels = false;
   bool texture_coordinates = false;
   bool even = false;
+  int map_side = 0;  // of maps that are baked, texels; 0: none
 };
 
 // A mesh that is to be made.

@@ -57,11 +57,10 @@ void declare_options(Job& job, SynthOptions& options) {
       .required()
       .reads(recipe_and_images);
   job.options
-      .add_option(
-          "-o,--output", options.body.output,
-          "the mesh: " + written_mesh_words() +
-              ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
-              "--write-recipe or --page is given")
+      .add_option("-o,--output", options.body.output,
+                  "the mesh: " + written_mesh_words() +
+                      ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict, "
+                      "--write-recipe or --page is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
         if (!options.texture.size.empty()) return texture_files(options.texture, words.front());

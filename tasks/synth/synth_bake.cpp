@@ -35,6 +35,13 @@ int side_of_level(const MeshRequest& request, std::size_t level) {
   return std::max(side >> level, kLeastMap);
 }
 
+// Where no maps are baked, the image is as large as the charts need.
+TextureAtlas atlas_of_level(const TriangleMesh& mesh, const MeshRequest& request, std::size_t level) {
+  const int side = side_of_level(request, level);
+  return request.bake > 0 ? make_texture_atlas(mesh, side, "--bake")
+                          : make_texture_atlas(mesh, side, "--uv", kMostMap);
+}
+
 fs::path map_file(const fs::path& output, std::size_t level, const std::string& word) {
   const std::string lod = level == 0 ? "" : "_lod" + std::to_string(level);
   return output.parent_path() / (output.stem().string() + lod + "_" + word + ".png");
@@ -136,8 +143,7 @@ void declare_bake_options(Job& job, MeshRequest& request) {
               "texture coordinates in a .glb or .obj. longitude, which --uv means by itself: u = 1/2 + "
               "longitude / 360 degrees, v from the north pole to the south; the 180th meridian cuts the "
               "triangles that cross it. charts: an atlas of charts of one scale, none of which overlap, "
-              "padded "
-              "by 4 texels of a map of 2048, or of --bake")
+              "padded by 4 texels of a map of 2048, or of --bake")
           .check(one_of({"longitude", "charts"}))
           .implied("longitude")
           .default_text("");
@@ -147,7 +153,8 @@ void declare_bake_options(Job& job, MeshRequest& request) {
                   "coarse it is. Each texel is carried along the mesh's normal to the surface. Files beside "
                   "the mesh: rock_normal.png (tangent space, MikkTSpace, y up), _height (16 bits), "
                   "_occlusion, _curvature, _label, and _color where a layer paints; a .glb holds normals, "
-                  "occlusion and colours in its material. Maps of each level of --lod have half of the side")
+                  "occlusion and colours in its material. Maps of each level of --lod have half of the side, "
+                  "64 at least")
       .check(in_range(kLeastMap, kMostMap))
       .placeholder("N")
       .default_text("")
@@ -183,10 +190,15 @@ void add_skins(Job& job, const MeshRequest& request, const SkinSources& sources,
   const BodyMeshJob& finest = sources.made_by;
   std::optional<Occluder> occluder;
   std::optional<SurfaceLabels> labels;
+  // All atlases come first: charts that do not fit leave no maps behind.
+  std::vector<TextureAtlas> atlases;
+  for (std::size_t level = 0; level < levels.size(); ++level)
+    atlases.push_back(atlas_of_level(*levels[level].mesh, request, level));
+  job.summary["charts"] = nlohmann::ordered_json::array();
+  if (request.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
   for (std::size_t level = 0; level < levels.size(); ++level) {
     const TriangleMesh& mesh = *levels[level].mesh;
-    const TextureAtlas atlas =
-        make_texture_atlas(mesh, side_of_level(request, level), request.bake > 0 ? "--bake" : "--uv");
+    const TextureAtlas& atlas = atlases[level];
     MeshSkin skin{atlas.coordinates};
     skin.tangents = vertex_tangents(mesh, skin.coordinates);
     const AtlasStretch stretch = atlas_stretch(mesh, skin.coordinates);

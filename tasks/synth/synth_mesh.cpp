@@ -267,7 +267,7 @@ void make_files(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
   if (!region.is_cut()) question_pieces(job, field, recipe, report.components);
   if (has_colors(recipe)) {
     job.summary["vertex_colors"] = format.has_colors;
-    if (!format.has_colors) {
+    if (!format.has_colors && request.bake == 0) {
       job.say("note: " + output.extension().string() +
               " holds no colours, which the recipe's layers have; write a .ply or a .glb");
     }
@@ -420,7 +420,8 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
                     request.gravity.wanted(),
                     request.labels,
                     !request.uv.empty(),
-                    request.even};
+                    request.even,
+                    request.bake};
   const int resolution = choose_resolution(job, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   check_levels(request.levels, resolution);

@@ -67,7 +67,8 @@ class MeshOutput {
     if (region.is_patch || !(recipe.origin == Vec3d{})) info_.origin = recipe.origin + region.center;
     info_.whole_body = !region.is_patch;
     info_.texture_coordinates = request.uv == "longitude";
-    if (has_colors(recipe) && (format.has_colors || !request.preview.file.empty())) {
+    const bool shows_colors = format.has_colors || !request.preview.file.empty() || request.bake > 0;
+    if (has_colors(recipe) && shows_colors) {
       colors_.emplace(recipe, file.string(), field);
     }
     if (request.labels) {

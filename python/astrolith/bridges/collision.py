@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from typing import Any, Iterable, Optional, Sequence
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 import numpy.typing as npt
@@ -43,7 +43,10 @@ def _outward(vertices: npt.NDArray[np.float64], faces: npt.NDArray[Any]) -> npt.
 def _convex(points: npt.NDArray[np.float64], unit: str) -> Mesh:
     """The convex hull of points."""
     spatial = required("scipy.spatial", "collision")
-    hull = spatial.ConvexHull(points)
+    try:
+        hull = spatial.ConvexHull(points)
+    except spatial.QhullError as error:
+        raise ValueError(f"{len(points)} points of the hull span no volume; ask for more directions") from error
     used = np.sort(hull.vertices)
     number = np.zeros(len(points), np.uint32)
     number[used] = np.arange(len(used), dtype=np.uint32)
@@ -139,7 +142,7 @@ class _Model:
         self.inertia = {"ixx": i[0, 0], "iyy": i[1, 1], "izz": i[2, 2], "ixy": i[0, 1], "ixz": i[0, 2], "iyz": i[1, 2]}
 
     def sdf(self) -> str:
-        geometry = lambda file: f"<geometry><mesh><uri>{file}</uri></mesh></geometry>"
+        geometry = lambda file: f"<geometry><mesh><uri>{escape(file)}</uri></mesh></geometry>"
         moments = "".join(f"<{k}>{v:.9g}</{k}>" for k, v in self.inertia.items())
         collisions = "".join(
             f"\n      <collision name='part{k}'>{geometry(file)}</collision>" for k, file in enumerate(self.parts)
@@ -217,7 +220,8 @@ def write_model(
     density
         kg/m3, above 0.
     parts
-        Convex meshes that collide, such as those of :func:`convex_parts`, in the body's unit; None: its :func:`hull`.
+        Convex meshes that collide, such as those of :func:`convex_parts`, in the unit that they
+        state, else the body's; None: its :func:`hull`.
     unit
         The unit of the mesh's coordinates; None: what the mesh or its file states.
 
@@ -237,7 +241,8 @@ def write_model(
         raise ValueError(f"{name}: is no .sdf, .urdf or .xml file; name it with that extension")
     known = _unit(mesh, unit)
     seen = _in_metres(mesh, known)
-    bumping = [_in_metres(part, known) for part in ([hull(mesh, unit=known)] if parts is None else parts)]
+    given = [hull(mesh, unit=known)] if parts is None else parts
+    bumping = [_in_metres(part, unit_of(part, None, tuple(METRES), "parts", known)) for part in given]
     body = gravity(seen, density, degree=0, sample=0).figures.body
     written = [name, f"{stem}_visual.obj"]
     write_mesh(seen, written[1])

@@ -90,6 +90,7 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
 
     Lengths are metres and +z is up, as in the body's frame. Each level of detail is a variant of the set ``lod``, of which
     the finest is chosen. The material is a ``UsdPreviewSurface`` without shine; maps are .png files beside the scene.
+    Colours of vertices stay behind: bake them. A body with an origin is relative to it, as in the .glb.
 
     Parameters
     ----------
@@ -118,9 +119,7 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
     pxr = required("pxr", "usd")
     for module in ("Usd", "UsdGeom", "UsdShade", "Sdf", "Vt"):
         required(f"pxr.{module}", "usd")
-    if os.path.exists(name):
-        os.remove(name)  # a stage that another one has open in this process cannot be made again
-    stage = pxr.Usd.Stage.CreateNew(name)
+    stage = pxr.Usd.Stage.CreateInMemory()
     pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     pxr.UsdGeom.SetStageUpAxis(stage, pxr.UsdGeom.Tokens.z)
     root = pxr.UsdGeom.Xform.Define(stage, "/body").GetPrim()
@@ -143,5 +142,5 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
             material = _material(pxr, stage, "/body/regolith", files)
             pxr.UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
     variants.SetVariantSelection("lod0")
-    stage.GetRootLayer().Save()
+    stage.GetRootLayer().Export(name)
     return written
