@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 # Debian's emscripten asks node for packages that only Debian's node finds by itself.
 export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
 build() {
-  scripts/setup.sh --web
+  scripts/setup.sh --synth --web
   scripts/build.sh web
 }
 
@@ -28,6 +28,7 @@ case ${1:-} in
   test)
     synth=${2:?web.sh: name the program synth}
     build
+    node tests/web/fresh_values_test.js build/web/web/core
     node tests/web/core_test.js build/web/web/core "$synth"
     status=0
     /usr/bin/python3 tests/web/page_test.py build/web/page.html "$synth" || status=$?

@@ -138,8 +138,10 @@ def check_slider(page, synth):
 def check_layers(page):
     """A layer is added by the keyboard, switched off and removed."""
     count = len(page.recipe()["layers"])
-    choice = page.driver.find_element(By.CSS_SELECTOR, '#form select[aria-label="add to layers"]')
-    choice.send_keys("worley" + Keys.ENTER)
+    choice = page.driver.find_element(By.CSS_SELECTOR, '#form select[aria-label="kind to add to layers"]')
+    choice.send_keys("worley")
+    check(len(page.recipe()["layers"]) == count, "the choice of a kind adds a layer before it is asked to")
+    page.driver.find_element(By.CSS_SELECTOR, '#form button[aria-label="add to layers"]').send_keys(Keys.ENTER)
     page.settled()
     layers = page.recipe()["layers"]
     check(len(layers) == count + 1 and layers[-1]["type"] == "worley", f"no layer was added: {layers}")
@@ -148,6 +150,9 @@ def check_layers(page):
     page.settled()
     check(len(page.recipe()["layers"]) == count, "a layer that is off is in the recipe")
     check(page.mesh_hash() != with_layer, "a layer that is off changes the mesh")
+    page.driver.find_element(By.CSS_SELECTOR, f'#form button[aria-label="move layers[{count}] up"]').send_keys(Keys.ENTER)
+    focus = page.script("return document.activeElement.getAttribute('aria-label')")
+    check(focus in (f"move layers[{count - 1}] up", f"move layers[{count - 1}] down"), f"after a move the focus is on {focus!r}")
 
 
 def check_refusal(page, synth):
@@ -165,10 +170,24 @@ def check_refusal(page, synth):
     check("frequency" in field, f"the refusal stands beside {field!r}")
 
 
-def check_bad_file(page, synth):
-    text = example("kernels.json")[:700]
-    page.open(text, "cut.json")
-    check(page.text("refusal") == synth.run(text, "cut.json")[1], f"of a cut file the page says {page.text('refusal')!r}")
+def check_bad_files(page, synth):
+    """What is no recipe is refused in the words of synth, and the recipe before it stays."""
+    page.open(example("fractal_hills.json"), "fractal_hills.json")
+    before = page.recipe()
+    unlike = ('{"layers": 5}', '{"layers": [null]}', '{"seed": 1, "seed": 2}', '{"seed": 1e400}', "[" * 5000)
+    for text in (example("kernels.json")[:700], *unlike):
+        page.open(text, "bad.json")
+        message = synth.run(text, "bad.json")[1]
+        check(page.text("refusal") == message != "", f"of {text[:20]} the page says {page.text('refusal')!r}, synth says {message!r}")
+        check(page.recipe() == before, f"{text[:20]} replaces the recipe")
+
+
+def check_damaged_link(driver, address):
+    for code in ("%25%25", "QVNUAQ"):
+        driver.get("about:blank")
+        page = Page(driver, f"{address}#r={code}")
+        page.settled()
+        check("triangles" in page.text("figures") and page.text("refusal") != "", f"a link with {code} leaves a dead page")
 
 
 def check_link(page, address):
@@ -227,8 +246,9 @@ def main():
         check_slider(page, synth)
         check_layers(page)
         check_refusal(page, synth)
-        check_bad_file(page, synth)
+        check_bad_files(page, synth)
         check_link(page, address)
+        check_damaged_link(driver, address)
         check_own_page(driver, synth, file)
         check_quiet(driver)
     finally:

@@ -2,10 +2,14 @@
 // A call that fails throws an Error whose `status` is that of synth: 1, the work failed, or 2, the recipe is wrong.
 function coreCalls(module) {
   "use strict";
-  const textAt = pointer => module.UTF8ToString(pointer);
+  // The core's pointers come as signed numbers, its memory may have 4 GB.
+  const place = pointer => pointer >>> 0;
+  const textAt = pointer => module.UTF8ToString(place(pointer));
+  const failed = (message, status) => Object.assign(new Error(message), {status});
 
   function withBytes(bytes, use) {
-    const pointer = module._malloc(bytes.length + 1);
+    const pointer = place(module._malloc(bytes.length + 1));
+    if (pointer === 0) throw failed("the recipe needs more memory than a page may have", 1);
     try {
       module.HEAPU8.set(bytes, pointer);
       module.HEAPU8[pointer + bytes.length] = 0;
@@ -17,13 +21,12 @@ function coreCalls(module) {
   const withText = (text, use) => withBytes(new TextEncoder().encode(text), use);
 
   function require(status) {
-    if (status === 0) return;
-    throw Object.assign(new Error(textAt(module._astrolith_message())), {status});
+    if (status !== 0) throw failed(textAt(module._astrolith_message()), status);
   }
 
   // A copy of `count` numbers: the memory moves when it grows.
   function taken(Type, pointer, count) {
-    return pointer === 0 ? null : new Type(module.HEAPU8.buffer, pointer, count).slice();
+    return pointer === 0 ? null : new Type(module.HEAPU8.buffer, place(pointer), count).slice();
   }
 
   function madeMesh() {
@@ -39,7 +42,7 @@ function coreCalls(module) {
 
   function written() {
     return {
-      bytes: taken(Uint8Array, module._astrolith_bytes(), module._astrolith_byte_count()),
+      bytes: taken(Uint8Array, module._astrolith_bytes(), place(module._astrolith_byte_count())),
       sha256: textAt(module._astrolith_sha256()),
     };
   }

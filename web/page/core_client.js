@@ -10,44 +10,73 @@ class CoreClient {
     this.onfraction = () => {};
     this.worker = this.started();
     this.spare = null;
+    this.keepsSpare = false;
   }
-  prepareSpare() { this.spare = this.spare || this.started(); }
+  keepSpare() {
+    this.keepsSpare = true;
+    this.prepare();
+  }
+
+  // The workers that are missing. Only a call makes new ones: workers that cannot start would else replace each other for ever.
+  prepare() {
+    this.worker = this.worker || this.started();
+    if (this.keepsSpare) this.spare = this.spare || this.started();
+  }
 
   started() {
     const worker = new Worker(this.url);
     worker.postMessage({module: this.module});
     worker.onmessage = ({data}) => {
-      if (data.fraction !== undefined) return this.onfraction(data.fraction);
-      const {resolve, reject} = this.waiting.get(data.id);
-      this.waiting.delete(data.id);
-      if (!data.error) return resolve(data.result);
-      const error = Object.assign(new Error(data.error.message), {status: data.error.status});
-      reject(error);
-      if (error.status === undefined) this.fail(error);  // a trap: the module is not to be used again
+      if (worker === this.worker) this.take(data);  // one that was ended may have sent more
     };
-    worker.onerror = event => this.fail(new Error(event.message || "the core stopped"));
+    worker.onerror = event => {
+      if (worker === this.spare) this.spare = null;
+      if (worker === this.worker) this.fail(new Error(event.message || "the core stopped"));
+    };
     return worker;
+  }
+
+  take(data) {
+    if (data.fraction !== undefined) return this.onfraction(data.fraction);
+    const {resolve, reject} = this.waiting.get(data.id);
+    this.waiting.delete(data.id);
+    if (!data.error) return resolve(data.result);
+    const error = Object.assign(new Error(data.error.message), {status: data.error.status});
+    reject(error);
+    if (error.status === undefined) this.fail(error);  // a trap: the module is not to be used again
   }
 
   call(call, ...args) {
     const id = ++this.number;
     return new Promise((resolve, reject) => {
+      this.prepare();
       this.waiting.set(id, {resolve, reject});
       this.worker.postMessage({id, call, args});
     });
+  }
+
+  // A call that goes on, anew, when what runs is ended for something else, but not when the user stops it.
+  async lasting(...call) {
+    for (;;) {
+      try {
+        return await this.call(...call);
+      } catch (error) {
+        if (error.stopped !== "replaced") throw error;
+      }
+    }
   }
 
   fail(error) {
     const waiting = [...this.waiting.values()];
     this.waiting.clear();
     this.worker.terminate();
-    this.worker = this.spare || this.started();
-    this.spare = this.started();
+    this.worker = this.spare;
+    this.spare = null;
     waiting.forEach(({reject}) => reject(error));
   }
 
-  // Ends what is going on; its promises are rejected with `stopped` set.
-  stop() {
-    if (this.waiting.size > 0) this.fail(Object.assign(new Error("stopped"), {stopped: true}));
+  // Ends what is going on; its promises are rejected with the reason in `stopped`: "replaced", or "user".
+  stop(reason) {
+    if (this.waiting.size > 0) this.fail(Object.assign(new Error("stopped"), {stopped: reason}));
   }
 }

@@ -3,7 +3,7 @@
 "use strict";
 let core;
 
-async function start(module) {
+function start(module) {
   let told = 0;
   const goesOn = fraction => {
     const now = performance.now();
@@ -11,11 +11,14 @@ async function start(module) {
     if (now - told > 100) told = now;
     return true;
   };
-  const instantiateWasm = (imports, receive) => {
-    WebAssembly.instantiate(module, imports).then(receive);
-    return {};
-  };
-  core = makeAstrolithCore({instantiateWasm, goesOn}).then(coreCalls);
+  core = new Promise((resolve, reject) => {
+    const instantiateWasm = (imports, receive) => {
+      WebAssembly.instantiate(module, imports).then(receive).catch(reject);
+      return {};
+    };
+    makeAstrolithCore({instantiateWasm, goesOn}).then(coreCalls).then(resolve, reject);
+  });
+  core.catch(() => {});  // every call tells of it
 }
 
 const calls = {
@@ -23,7 +26,10 @@ const calls = {
     core.make(recipe, name, resolution);
     return core.mesh();
   },
-  writeMesh: (core, format) => core.writeMesh(format),
+  meshFile(core, recipe, name, resolution, format) {
+    core.make(recipe, name, resolution);
+    return core.writeMesh(format);
+  },
   writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
   version: core => core.version(),
 };

@@ -1,5 +1,7 @@
 // The recipe that is edited: its document, which layers are off, and what came before. A path is a list of keys, such as
 // ["layers", 0, "amplitude"]. Layers that are off stay in the list and are left out of the text.
+const MOST_STEPS = 200, MOST_CHARACTERS = 32e6;  // of what can be undone
+
 class EditedRecipe {
   constructor(document, name) {
     this.name = name;
@@ -22,6 +24,7 @@ class EditedRecipe {
     if (value !== undefined) holder[last] = value;
     else if (Array.isArray(holder)) holder.splice(last, 1);
     else delete holder[last];
+    if (path.length === 1 && path[0] === "layers" && value === undefined) this.off.clear();
     if (path.length === 2 && path[0] === "layers" && value === undefined) this.moveMarks(at => at === last ? -1 : at > last ? at - 1 : at);
   }
 
@@ -68,7 +71,8 @@ class EditedRecipe {
     if (gesture !== undefined && gesture === this.gesture) return;
     this.gesture = gesture;
     this.before.push(this.snapshot());
-    if (this.before.length > 200) this.before.shift();
+    let characters = this.before.reduce((sum, text) => sum + text.length, 0);
+    while (this.before.length > MOST_STEPS || characters > MOST_CHARACTERS) characters -= this.before.shift().length;
     this.after = [];
   }
   step(from, to) {

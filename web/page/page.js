@@ -4,8 +4,15 @@
   const at = id => document.getElementById(id);
   const COARSE = [12, 16, 24, 32, 48];  // cells of a mesh while something moves
   const REST_MS = 250;                  // after which a finer mesh is made
+  const LONGEST_LINK = 500000;          // characters; browsers take addresses of one or two million
 
   const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
+  // Each byte as a character, in parts: a call has room for so many arguments.
+  function bytesText(bytes) {
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+    return text;
+  }
   const encoded = text => new TextEncoder().encode(text);
   const client = new CoreClient(PAGE.worker, await WebAssembly.compile(bytesOf(PAGE.core)));
   PAGE.core = null;
@@ -35,7 +42,7 @@
 
   // -- meshes: coarse ones while something moves, a finer one when it rests -----------------------------------------------
 
-  let wanted = false, drawing = null, coarse = 3, fine = false, shown = null;
+  let wanted = false, drawing = null, coarse = 3, fine = false, working = 0;
 
   function say(mesh, cells, milliseconds) {
     const {triangles, extent, length_unit: unit, closed, components} = mesh.figures;
@@ -44,23 +51,27 @@
       `${components} ${components === 1 ? "piece" : "pieces"}, ${sides} ${unit}, ${cells} cells, ${(milliseconds / 1000).toFixed(2)} s`;
   }
 
-  async function make(cells) {
-    const start = performance.now();
+  // Waits for a mesh, which the user can stop.
+  async function waitedFor(work) {
+    ++working;
     at("stop").disabled = false;
     client.onfraction = fraction => { at("work").hidden = false; at("work").value = fraction; };
     try {
-      const mesh = await client.call("make", encoded(recipe.text()), recipe.name, cells);
-      size = Math.max(...mesh.figures.extent);
-      mesh.milliseconds = performance.now() - start;
-      return mesh;
+      return await work;
     } finally {
-      at("work").hidden = true;
-      at("stop").disabled = true;
+      if (--working === 0) at("work").hidden = at("stop").disabled = true;
     }
   }
 
+  async function make(cells) {
+    const start = performance.now();
+    const mesh = await waitedFor(client.call("make", encoded(recipe.text()), recipe.name, cells));
+    size = Math.max(...mesh.figures.extent);
+    mesh.milliseconds = performance.now() - start;
+    return mesh;
+  }
+
   function show(mesh, cells) {
-    shown = {mesh, cells};
     if (view) view.show(mesh);
     performance.mark("picture", {detail: cells});
     say(mesh, cells, mesh.milliseconds);
@@ -78,8 +89,9 @@
     return path;
   }
   function refuse(error) {
+    if (error.stopped) return;
     at("refusal").textContent = error.message;
-    const path = pathIn(error.message);
+    const path = recipe ? pathIn(error.message) : [];
     if (path.length > 0) form.refuse(path, error.message);
   }
 
@@ -95,7 +107,7 @@
       if (cells === COARSE[coarse] && mesh.milliseconds < 40 && coarse + 1 < COARSE.length) ++coarse;
       return !wanted;
     } catch (error) {
-      if (!error.stopped && !wanted) refuse(error);
+      if (!wanted) refuse(error);
       return false;
     }
   }
@@ -116,7 +128,7 @@
 
   function draw() {
     wanted = true;
-    if (drawing && fine) client.stop();
+    if (drawing && fine) client.stop("replaced");
     if (!drawing) drawing = drawAll().finally(() => { drawing = null; });
     return drawing;
   }
@@ -133,30 +145,32 @@
 
   // -- recipes ------------------------------------------------------------------------------------------------------------
 
-  // The document in the bytes of a file. What is no JSON the core reads: a compact recipe, or what it has words for.
+  let opened = 0;  // how many times the user opened something
+
+  // The document in the bytes of a file. The core reads it first, and refuses what is no recipe. The fields that a JSON recipe
+  // leaves out stay out.
   async function documentOf(bytes, name) {
-    const text = new TextDecoder().decode(bytes);
-    try {
-      const document = recipeText.read(text);
-      if (document && typeof document === "object" && !Array.isArray(document)) return document;
-    } catch (error) {
-      if (!(error instanceof SyntaxError)) throw error;
-    }
-    const json = await client.call("writeRecipe", bytes, name, "json");
-    return recipeText.read(new TextDecoder().decode(json.bytes));
+    const json = await client.lasting("writeRecipe", bytes, name, "json");
+    const isCompact = bytesText(bytes.subarray(0, 3)) === "AST";
+    return recipeText.read(new TextDecoder().decode(isCompact ? json.bytes : bytes));
   }
 
-  // Opens the bytes of a file. One that holds no document leaves the page as it is, but for the message.
+  // Opens the bytes of a file. One that holds no recipe leaves the page as it is, but for the message; of several that are opened
+  // at once the last counts.
   async function openBytes(bytes, name) {
+    const number = ++opened;
     wanted = false;
-    if (drawing) client.stop();
+    if (drawing) client.stop("replaced");
     await settled();
+    let read;
     try {
-      recipe = new EditedRecipe(await documentOf(bytes, name), name.replace(/\.astro$/, ".json"));
+      read = await documentOf(bytes, name);
     } catch (error) {
-      at("refusal").textContent = error.message;
+      if (number === opened && !error.stopped) at("refusal").textContent = error.message;
       return false;
     }
+    if (number !== opened) return false;
+    recipe = new EditedRecipe(read, name.replace(/\.astro$/, ".json"));
     at("examples").value = PAGE.examples.some(example => example.name === recipe.name) ? recipe.name : "";
     ["layers", "layers[0]"].forEach(form.open);
     if (view) view.refit();
@@ -174,7 +188,11 @@
     const example = PAGE.examples.find(({name}) => name === at("examples").value);
     if (example) openExample(example);
   };
-  at("file").onchange = () => at("file").files[0] && openFile(at("file").files[0]);
+  at("file").onchange = () => {
+    const file = at("file").files[0];
+    at("file").value = "";  // so that the same file can be opened again
+    if (file) openFile(file);
+  };
   document.ondragover = event => { event.preventDefault(); document.body.classList.add("dropping"); };
   document.ondragleave = () => document.body.classList.remove("dropping");
   document.ondrop = event => {
@@ -219,17 +237,17 @@
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }
 
-  // The mesh of the finest resolution as a file: {bytes, sha256}.
-  async function meshFile(format) {
-    await settled();
-    if (!shown || shown.cells !== finest()) await make(finest()).then(mesh => show(mesh, finest()));
-    return client.call("writeMesh", format);
-  }
-  const recipeFile = format => client.call("writeRecipe", encoded(recipe.text()), recipe.name, format);
+  // The mesh of the finest resolution as a file, {bytes, sha256}: of the recipe as it is now, whatever is drawn.
+  const meshFile = format =>
+    waitedFor(client.lasting("meshFile", encoded(recipe.text()), recipe.name, finest(), format));
+  const recipeFile = format => client.lasting("writeRecipe", encoded(recipe.text()), recipe.name, format);
 
   async function link() {
     const {bytes} = await recipeFile("astro");
-    const code = btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+    const code = btoa(bytesText(bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+    if (code.length > LONGEST_LINK) {
+      throw new Error(`the recipe is too long for a link (${code.length} of at most ${LONGEST_LINK} characters); save the .astro`);
+    }
     return location.href.replace(/#.*/, "") + "#r=" + code;
   }
 
@@ -250,13 +268,13 @@
 
   // -- the rest -----------------------------------------------------------------------------------------------------------
 
-  at("stop").onclick = () => client.stop();
+  at("stop").onclick = () => client.stop("user");
   const tellCells = () => { at("cells").textContent = finest(); };
   at("resolution").oninput = () => { tellCells(); draw(); };
   const turnSun = () => view && view.setSun(Number(at("azimuth").value), Number(at("height").value));
   at("azimuth").oninput = at("height").oninput = turnSun;
   tellCells();
-  client.call("version").then(version => { at("version").textContent = `Astrolith ${version}.`; });
+  client.lasting("version").then(version => { at("version").textContent = `Astrolith ${version}.`; }, refuse);
 
   // For whoever drives the page by a script: tests, and other pages.
   const setCells = cells => {
@@ -266,16 +284,31 @@
   };
   window.astrolith = {openText, settled, meshFile, recipeText: () => recipe.text(), link, setCells};
 
-  // The recipe of the link, that of the page, or the first example.
+  async function openLink(code) {
+    let bytes;
+    try {
+      bytes = bytesOf(code.replace(/-/g, "+").replace(/_/g, "/"));
+    } catch (error) {
+      at("refusal").textContent = "the link is damaged: what stands behind #r= is no recipe";
+      return false;
+    }
+    return openBytes(bytes, "link.astro");
+  }
+
+  // The recipe of the link, or that of the page. Where neither is one, the first example, so that there is one to change.
   async function openFirst() {
-    const given = location.hash.match(/^#r=([\w-]+)$/);
-    if (given) return openBytes(bytesOf(given[1].replace(/-/g, "+").replace(/_/g, "/")), "link.astro");
-    const own = JSON.parse(at("recipe").textContent);
-    if (own) return openBytes(bytesOf(own.bytes), own.name);
-    return openExample(PAGE.examples.find(example => example.name === PAGE.first));
+    const link = location.hash.match(/^#r=(.*)$/), own = JSON.parse(at("recipe").textContent);
+    if (link) await openLink(link[1]);
+    else if (own) await openBytes(bytesOf(own.bytes), own.name);
+    if (recipe && (link || own)) return;
+    const message = at("refusal").textContent;
+    await openExample(PAGE.examples.find(example => example.name === PAGE.first));
+    if (message) at("refusal").textContent = message;
   }
   window.onhashchange = openFirst;
   await openFirst();
-  client.prepareSpare();
+  client.keepSpare();
   document.body.dataset.ready = "yes";
-})();
+})().catch(error => {
+  document.getElementById("refusal").textContent = `this browser cannot show the page: ${error.message}`;
+});

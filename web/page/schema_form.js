@@ -23,12 +23,13 @@ function schemaForm(container, values, editing) {
 
   function change(path, value, gesture) {
     editing.set(path, value, gesture);
+    const holder = fields.get(pathText(path));
+    if (holder) holder.classList.remove("unset");
     editing.changed();
   }
-  // A change after which the form has other fields.
+  // A change after which the form has other fields. It may give the labels of what then has the focus: the first that is there.
   function reshape(act) {
-    act();
-    rebuild();
+    rebuild(act());
     editing.changed();
   }
   const stop = act => event => { event.preventDefault(); reshape(act); };
@@ -119,19 +120,17 @@ function schemaForm(container, values, editing) {
     }));
   }
 
-  const isRow = node => node.type === "array" && node.minItems === node.maxItems && node.maxItems <= 6 &&
-    values.resolved(node.items).type === "number";
   const isGroup = node => (node.type === "object" && node.properties !== undefined);
-  const hasParts = node => isGroup(node) || isRow(node);
-  const isList = node => node.type === "array" && !isRow(node) &&
+  const hasParts = node => isGroup(node) || values.isRow(node);
+  const isList = node => node.type === "array" && !values.isFixed(node) &&
     (hasParts(values.resolved(node.items)) || values.kindsOf(node.items).length > 0);
 
   function valueField(path, node, value) {
     if (node.enum) return chooser(path, node.enum, value, path[path.length - 1] === "type");
     if (node.type === "boolean") return switchField(path, value);
     if (node.type === "string") return textField(path, String(value));
-    if (node.type === "number" || node.type === "integer") return numberField(path, node, value);
-    if (isRow(node) && Array.isArray(value)) return rowField(path, node, value);
+    if (values.isNumber(node)) return numberField(path, node, value);
+    if (values.isRow(node) && Array.isArray(value)) return rowField(path, node, value);
     return jsonField(path, value);
   }
 
@@ -142,19 +141,26 @@ function schemaForm(container, values, editing) {
     return element("small", {textContent: words.replace(/`/g, "")});
   }
 
+  const addLabel = path => `add ${pathText(path)}`, removeLabel = path => `remove ${pathText(path)}`;
+
+  // Takes back what is stated, unless it must be. The style hides it where nothing is.
+  function backButton(path, required) {
+    if (required) return null;
+    const act = stop(() => { editing.set(path, undefined); return [addLabel(path), pathText(path)]; });
+    return Object.assign(button("×", removeLabel(path), act), {className: "back"});
+  }
+
   function plainField(path, key, node, required) {
     const given = editing.get(path), value = given !== undefined ? given : node.default;
     const holder = element("div", {className: given === undefined ? "field unset" : "field"});
     fields.set(pathText(path), holder);
     const name = element("span", {className: "name", textContent: key});
     if (value === undefined) {
-      const add = button("add", `add ${key}`, stop(() => editing.set(path, values.fresh(node))));
+      const add = button("add", addLabel(path), stop(() => { editing.set(path, values.fresh(node)); return [pathText(path)]; }));
       holder.append(element("div", {className: "head"}, name, add), meaning(node));
       return holder;
     }
-    const back = required || given === undefined ? null
-      : button("×", `back to what ${key} is without being stated`, stop(() => editing.set(path, undefined)));
-    holder.append(element("div", {className: "head"}, name, valueField(path, node, value), back), meaning(node));
+    holder.append(element("div", {className: "head"}, name, valueField(path, node, value), backButton(path, required)), meaning(node));
     return holder;
   }
 
@@ -186,11 +192,14 @@ function schemaForm(container, values, editing) {
       const holder = element("div", {className: "field unset"});
       fields.set(pathText(path), holder);
       holder.append(element("div", {className: "head"}, element("span", {className: "name", textContent: key}),
-        button("add", `add ${key}`, stop(() => { editing.set(path, values.fresh(node)); open.add(pathText(path)); }))), meaning(node));
+        button("add", addLabel(path), stop(() => {
+          editing.set(path, values.fresh(node));
+          open.add(pathText(path));
+          return [removeLabel(path)];
+        }))), meaning(node));
       return holder;
     }
-    const remove = required ? [] : [button("×", `remove ${key}`, stop(() => editing.set(path, undefined)))];
-    return group(path, key, remove, body => {
+    return group(path, key, [backButton(path, required)], body => {
       body.append(meaning(node), ...objectFields(path, node));
     });
   }
@@ -207,19 +216,31 @@ function schemaForm(container, values, editing) {
 
   function field(path, key, node, required) {
     if (isGroup(node)) return objectField(path, key, node, required);
-    if (isList(node)) return listField(path, key, node);
+    if (isList(node)) return listField(path, key, node, required);
     return plainField(path, key, node, required);
   }
 
   // -- lists -----------------------------------------------------------------------------------------------------------
 
+  const adderLabel = path => `add to ${pathText(path)}`;
+
   function itemButtons(path, count) {
-    const at = path[path.length - 1];
-    const moved = step => stop(() => { if (editing.move(path, step)) swapOpen(path, step); });
+    const list = path.slice(0, -1), at = path[path.length - 1];
+    const upLabel = to => `move ${pathText(to)} up`, downLabel = to => `move ${pathText(to)} down`;
+    const moved = step => stop(() => {
+      if (!editing.move(path, step)) return;
+      swapOpen(path, step);
+      const to = [...list, at + step], labels = [upLabel(to), downLabel(to)];
+      return step < 0 ? labels : labels.reverse();
+    });
     return [
-      at > 0 ? button("↑", "move up", moved(-1)) : null,
-      at + 1 < count ? button("↓", "move down", moved(1)) : null,
-      button("×", "remove", stop(() => { closeFrom(path); editing.set(path, undefined); })),
+      at > 0 ? button("↑", upLabel(path), moved(-1)) : null,
+      at + 1 < count ? button("↓", downLabel(path), moved(1)) : null,
+      button("×", removeLabel(path), stop(() => {
+        closeFrom(path);
+        editing.set(path, undefined);
+        return [removeLabel(path), adderLabel(list)];
+      })),
     ];
   }
 
@@ -264,32 +285,31 @@ function schemaForm(container, values, editing) {
   function listItem(path, items, value, count) {
     const kinds = values.kindsOf(items), node = values.resolved(items);
     if (kinds.length > 0) return kindItem(path, kinds, value, count);
-    if (isRow(node)) return rowItem(path, node, value, count);
+    if (values.isRow(node)) return rowItem(path, node, value, count);
     return group(path, itemTitle(value, path[path.length - 1]), itemButtons(path, count), body => body.append(...objectFields(path, node)));
   }
 
-  // What makes a new item: a button, or a choice among the kinds.
+  // What makes a new item: a button, and a choice before it where there are kinds.
   function adder(path, items) {
-    const kinds = values.kindsOf(items);
-    const add = value => {
+    const kinds = values.newKindsOf(items);
+    const add = value => stop(() => {
       const list = editing.get(path) || [];
-      const at = [...path, list.length];
-      if (editing.get(path) === undefined) editing.set(path, []);
-      editing.set(at, value);
+      editing.set(path, [...list, value()]);
       open.add(pathText(path));
-      open.add(pathText(at));
+      open.add(pathText([...path, list.length]));
       shown.set(pathText(path), Math.max(shown.get(pathText(path)) || 0, list.length + 1));
-    };
-    if (kinds.length === 0) return button("add", `add to ${pathText(path)}`, stop(() => add(values.fresh(items))));
+    });
+    if (kinds.length === 0) return [button("add", adderLabel(path), add(() => values.fresh(items)))];
     const words = kinds.flatMap(values.wordsOf);
-    const choice = element("select", {ariaLabel: `add to ${pathText(path)}`, className: "adder"},
-      element("option", {value: "", textContent: "add …"}), ...words.map(word => element("option", {value: word, textContent: word})));
+    const choice = element("select", {ariaLabel: `kind to ${adderLabel(path)}`},
+      ...words.map(word => element("option", {value: word, textContent: word})));
     choice.onclick = event => event.stopPropagation();
-    choice.onchange = () => {
-      const kind = kinds.find(k => values.wordsOf(k).includes(choice.value));
-      reshape(() => add({...values.fresh(kind), ...risen(kind), type: choice.value}));
-    };
-    return choice;
+    return [choice, button("add", adderLabel(path), add(() => newOfKind(kinds, choice.value)))];
+  }
+
+  function newOfKind(kinds, word) {
+    const kind = kinds.find(k => values.wordsOf(k).includes(word));
+    return {...values.fresh(kind), ...risen(kind), type: word};
   }
 
   // A new kind of relief that is 0 high would show nothing: its first height becomes a fiftieth of the body.
@@ -301,10 +321,11 @@ function schemaForm(container, values, editing) {
     return key ? {[key]: Number((0.02 * editing.size()).toPrecision(2))} : {};
   }
 
-  function listField(path, key, node) {
-    const list = editing.get(path) || [];
+  function listField(path, key, node, required) {
+    const given = editing.get(path), list = given || [];
     const text = pathText(path);
-    return group(path, `${key} (${list.length})`, [adder(path, node.items)], body => {
+    const buttons = [...adder(path, node.items), given === undefined ? null : backButton(path, required)];
+    return group(path, `${key} (${list.length})`, buttons, body => {
       const most = Math.max(shown.get(text) || MOST_SHOWN, MOST_SHOWN);
       body.append(meaning(node), ...list.slice(0, most).map((value, at) => listItem([...path, at], node.items, value, list.length)));
       if (list.length > most) {
@@ -315,14 +336,14 @@ function schemaForm(container, values, editing) {
 
   // -- the whole -------------------------------------------------------------------------------------------------------
 
-  function rebuild() {
-    const focus = document.activeElement && document.activeElement.getAttribute("aria-label");
+  // `focus` are the labels of what may have the focus then; without it that stays where it is.
+  function rebuild(focus = [document.activeElement && document.activeElement.getAttribute("aria-label")]) {
     fields.clear();
     // What the body is made of comes first, and what is said about it last.
     const all = objectFields([], values.resolved(values.schema)), parts = all.filter(made => made.tagName === "DETAILS");
     container.replaceChildren(...parts, ...all.filter(made => !parts.includes(made)));
-    if (!focus) return;
-    const again = [...container.querySelectorAll("[aria-label]")].find(made => made.getAttribute("aria-label") === focus);
+    const labelled = [...container.querySelectorAll("[aria-label]")];
+    const again = focus.map(label => labelled.find(made => made.getAttribute("aria-label") === label)).find(Boolean);
     if (again) again.focus({preventScroll: true});
   }
 

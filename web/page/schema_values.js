@@ -3,41 +3,53 @@ function schemaValues(schema) {
   "use strict";
   const FAR = 1e6;  // limits beyond it say nothing of what is usual
 
-  // The node with what it refers to; what stands beside the reference wins.
+  // The node with what it refers to; what stands beside the reference wins. A number whose default depends on where it stands
+  // has `defaults`, by name, and no default.
   function resolved(node) {
     while (node && node.$ref) {
       const {$ref, ...beside} = node;
       node = {...$ref.slice(2).split("/").reduce((at, key) => at[key], schema), ...beside};
     }
-    return node;
+    if (!isNumber(node) || typeof node.default !== "object") return node;
+    const {default: defaults, ...beside} = node;
+    return {...beside, defaults};
   }
+  const isNumber = node => node.type === "number" || node.type === "integer";
+
+  // The node of an item of a list, which may say what each item is, or what all are.
+  const itemNode = (list, at) => resolved(Array.isArray(list.items) ? list.items[at] : list.items);
+  const isFixed = list => list.type === "array" && list.minItems !== undefined && list.minItems === list.maxItems;
+  // A short list of so many numbers.
+  const isRow = list => isFixed(list) && list.maxItems <= 6 &&
+    Array.from({length: list.maxItems}, (_, at) => itemNode(list, at)).every(isNumber);
 
   // The kinds that an item may be, each with a field `type`; empty where there is but one.
   function kindsOf(items) {
     return (resolved(items).oneOf || []).map(resolved).filter(kind => kind.properties && kind.properties.type);
   }
+  // Those that can be made of nothing: what has an image is made of pixels that nobody types.
+  const newKindsOf = items => kindsOf(items).filter(kind => !kind.properties.image);
   const wordsOf = kind => resolved(kind.properties.type).enum;
   const kindOf = (items, value) => kindsOf(items).find(kind => wordsOf(kind).includes(value && value.type));
 
   function newNumber(node) {
     const least = node.exclusiveMinimum !== undefined ? node.exclusiveMinimum : node.minimum;
-    const most = node.maximum;
-    if (least === undefined || (least <= 1 && (most === undefined || most >= 1) && least !== node.exclusiveMinimum)) {
-      return least === 0 && most === 1 ? 0.5 : 1;
-    }
-    return Math.max(least, 1) === node.exclusiveMinimum ? least + 1 : Math.max(least, 1);
+    if (node.maximum < 1 || (least === 0 && node.maximum === 1)) return (least + node.maximum) / 2;
+    if (least === undefined || least < 1) return 1;
+    return node.exclusiveMinimum !== undefined ? least + 1 : least;
   }
 
   // A value that the schema allows, with the fields that it requires.
   function fresh(given) {
     const node = resolved(given);
     if (node.default !== undefined) return JSON.parse(JSON.stringify(node.default));
+    if (node.defaults) return Object.values(node.defaults)[0];
     if (node.enum) return node.enum[0];
     const type = node.type;
     if (type === "boolean") return false;
     if (type === "string") return "";
-    if (type === "number" || type === "integer") return newNumber(node);
-    if (type === "array") return Array.from({length: node.minItems || 0}, () => fresh(node.items));
+    if (isNumber(node)) return newNumber(node);
+    if (type === "array") return Array.from({length: node.minItems || 0}, (_, at) => fresh(itemNode(node, at)));
     if (!node.properties && node.oneOf) return fresh(node.oneOf[0]);
     const value = {};
     const oneOf = node.oneOf && node.oneOf[0].required || [];
@@ -66,9 +78,10 @@ function schemaValues(schema) {
     if (low > 0 && low < 1e-6) words.push("> 0");
     if (node.maximum !== undefined && node.maximum < FAR) words.push("≤ " + node.maximum);
     if (node.default !== undefined && typeof node.default !== "object" && node.default !== "") words.push("default " + node.default);
+    if (node.defaults) words.push("default " + Object.entries(node.defaults).map(([name, value]) => `${value} (${name})`).join(", "));
     return words.join(", ");
   }
 
-  return {schema, resolved, kindsOf, kindOf, wordsOf, fresh, slide, limits};
+  return {schema, resolved, isNumber, isFixed, isRow, kindsOf, newKindsOf, kindOf, wordsOf, fresh, slide, limits};
 }
 if (typeof module === "object") module.exports = schemaValues;
