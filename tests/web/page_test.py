@@ -168,6 +168,7 @@ def check_refusal(page, synth):
     beside = page.driver.find_element(By.CSS_SELECTOR, "#form .refused .refusal")
     field = beside.find_element(By.XPATH, "..").text
     check("frequency" in field, f"the refusal stands beside {field!r}")
+    check(message in page.mesh_hash(), "of a refused recipe a mesh is saved")
 
 
 def check_bad_files(page, synth):
@@ -178,8 +179,18 @@ def check_bad_files(page, synth):
     for text in (example("kernels.json")[:700], *unlike):
         page.open(text, "bad.json")
         message = synth.run(text, "bad.json")[1]
-        check(page.text("refusal") == message != "", f"of {text[:20]} the page says {page.text('refusal')!r}, synth says {message!r}")
+        said = page.text("refusal")
+        check(said == message != "", f"of {text[:20]} the page says {said!r}, synth says {message!r}")
         check(page.recipe() == before, f"{text[:20]} replaces the recipe")
+
+
+def check_two_files(page):
+    """Of two files that are opened at once the later one stays."""
+    page.driver.execute_async_script(
+        "const [older, newer, done] = arguments, open = window.astrolith.openText;"
+        "Promise.all([open(older, 'older.json'), open(newer, 'newer.json')]).then(done)",
+        example("kernels.json"), example("fractal_hills.json"))  # fmt: skip
+    check(page.recipe() == json.loads(example("fractal_hills.json")), "the older of two files is open")
 
 
 def check_damaged_link(driver, address):
@@ -247,6 +258,7 @@ def main():
         check_layers(page)
         check_refusal(page, synth)
         check_bad_files(page, synth)
+        check_two_files(page)
         check_link(page, address)
         check_damaged_link(driver, address)
         check_own_page(driver, synth, file)

@@ -155,16 +155,16 @@
     return recipeText.read(new TextDecoder().decode(isCompact ? json.bytes : bytes));
   }
 
-  // Opens the bytes of a file. One that holds no recipe leaves the page as it is, but for the message; of several that are opened
-  // at once the last counts.
-  async function openBytes(bytes, name) {
+  // Opens the bytes of a file, given or promised. One that holds no recipe leaves the page as it is, but for the message; of
+  // several that are opened at once the last counts.
+  async function openBytes(given, name) {
     const number = ++opened;
     wanted = false;
     if (drawing) client.stop("replaced");
     await settled();
     let read;
     try {
-      read = await documentOf(bytes, name);
+      read = await documentOf(await given, name);
     } catch (error) {
       if (number === opened && !error.stopped) at("refusal").textContent = error.message;
       return false;
@@ -179,7 +179,7 @@
     return true;
   }
   const openText = (text, name) => openBytes(encoded(text), name);
-  const openFile = async file => openBytes(new Uint8Array(await file.arrayBuffer()), file.name);
+  const openFile = file => openBytes(file.arrayBuffer().then(buffer => new Uint8Array(buffer)), file.name);
   const openExample = example => openText(example.text, example.name);
 
   at("examples").append(new Option("own recipe", ""));

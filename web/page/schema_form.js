@@ -142,11 +142,12 @@ function schemaForm(container, values, editing) {
   }
 
   const addLabel = path => `add ${pathText(path)}`, removeLabel = path => `remove ${pathText(path)}`;
+  const adderLabel = path => `add to ${pathText(path)}`;  // of an item of a list
 
   // Takes back what is stated, unless it must be. The style hides it where nothing is.
   function backButton(path, required) {
     if (required) return null;
-    const act = stop(() => { editing.set(path, undefined); return [addLabel(path), pathText(path)]; });
+    const act = stop(() => { editing.set(path, undefined); return [addLabel(path), pathText(path), adderLabel(path)]; });
     return Object.assign(button("×", removeLabel(path), act), {className: "back"});
   }
 
@@ -160,7 +161,8 @@ function schemaForm(container, values, editing) {
       holder.append(element("div", {className: "head"}, name, add), meaning(node));
       return holder;
     }
-    holder.append(element("div", {className: "head"}, name, valueField(path, node, value), backButton(path, required)), meaning(node));
+    const head = element("div", {className: "head"}, name, valueField(path, node, value), backButton(path, required));
+    holder.append(head, meaning(node));
     return holder;
   }
 
@@ -222,8 +224,6 @@ function schemaForm(container, values, editing) {
 
   // -- lists -----------------------------------------------------------------------------------------------------------
 
-  const adderLabel = path => `add to ${pathText(path)}`;
-
   function itemButtons(path, count) {
     const list = path.slice(0, -1), at = path[path.length - 1];
     const upLabel = to => `move ${pathText(to)} up`, downLabel = to => `move ${pathText(to)} down`;
@@ -275,7 +275,7 @@ function schemaForm(container, values, editing) {
   }
 
   function rowItem(path, node, value, count) {
-    const number = element("span", {className: "name", textContent: path[path.length - 1] + 1});
+    const number = element("span", {className: "index", textContent: path[path.length - 1] + 1});
     const head = element("div", {className: "head"}, number, rowField(path, node, value), ...itemButtons(path, count));
     const holder = element("div", {className: "field"}, head);
     fields.set(pathText(path), holder);

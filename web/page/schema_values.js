@@ -78,7 +78,8 @@ function schemaValues(schema) {
     if (low > 0 && low < 1e-6) words.push("> 0");
     if (node.maximum !== undefined && node.maximum < FAR) words.push("≤ " + node.maximum);
     if (node.default !== undefined && typeof node.default !== "object" && node.default !== "") words.push("default " + node.default);
-    if (node.defaults) words.push("default " + Object.entries(node.defaults).map(([name, value]) => `${value} (${name})`).join(", "));
+    const named = Object.entries(node.defaults || {}).map(([name, value]) => `${value} (${name})`);
+    if (named.length > 0) words.push("default " + named.join(", "));
     return words.join(", ");
   }
 
