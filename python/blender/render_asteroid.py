@@ -2,6 +2,7 @@
 
     blender --background --factory-startup --python python/blender/render_asteroid.py -- RECIPE.json PICTURE.jpg
         [--resolution N] [--seed N] [--package FOLDER] [--synth PROGRAM] [--size WxH] [--samples N]
+        [--maps N] [--blend SCENE.blend]
 """
 
 import argparse
@@ -28,6 +29,8 @@ def arguments():
     parser.add_argument("--synth", default="synth")
     parser.add_argument("--size", default="640x480")
     parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--maps", type=int, default=0)
+    parser.add_argument("--blend", type=pathlib.Path)
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
 
 
@@ -61,7 +64,7 @@ def main():
         bpy.data.objects.remove(thing)
     own = options.seed is None
     bpy.ops.mesh.asteroid_add(filepath=str(options.recipe.resolve()), resolution=options.resolution, own_seed=own,
-                              seed=0 if own else options.seed)
+                              seed=0 if own else options.seed, maps=options.maps)
     made = bpy.context.object
     corners = [made.matrix_world @ type(made.location)(corner) for corner in made.bound_box]
     light_and_camera(tuple(sum(c[k] for c in corners) / 8 for k in range(3)))
@@ -75,13 +78,17 @@ def main():
     scene.view_settings.view_transform = "Standard"
     scene.render.filepath = str(options.picture.resolve())
     bpy.ops.render.render(write_still=True)
+    if options.blend:
+        bpy.ops.wm.save_as_mainfile(filepath=str(options.blend.resolve()))
     mesh = made.data
     colors = [0.0] * (4 * len(mesh.vertices))
-    mesh.color_attributes["astrolith_color"].data.foreach_get("color", colors)
+    if options.maps == 0:
+        mesh.color_attributes["astrolith_color"].data.foreach_get("color", colors)
     surface = mesh.materials[0].node_tree.nodes["Principled BSDF"]
     print("ASTEROID " + json.dumps({
         "vertices": len(mesh.vertices), "triangles": len(mesh.polygons), "smooth": all(p.use_smooth for p in mesh.polygons),
         "dimensions": list(made.dimensions), "metres": made["metres_per_blender_unit"], "by": made["made_by"],
+        "atlas": [layer.name for layer in mesh.uv_layers], "bent": surface.inputs["Normal"].is_linked,
         "colors": colors, "images": [i.name for i in bpy.data.images if i.packed_file],
         "normals": mesh.has_custom_normals, "seed": made["astrolith_seed"],
         "specular": [i.default_value for i in surface.inputs if i.name in ("Specular", "Specular IOR Level")],

@@ -83,6 +83,17 @@ def test_the_addon_makes_a_body_and_renders_it(blender, tmp_path, by, painted):
 
 
 @pytest.mark.parametrize("by", ["package", "synth"])
+def test_baked_maps_are_in_the_scene(blender, tmp_path, by):
+    layers = [*RECIPE["layers"], PAINT, {"type": "perlin", "amplitude": 0.004, "frequency": 60.0}]
+    (tmp_path / "body.json").write_text(json.dumps({**RECIPE, "layers": layers}))
+    options = ["--resolution", 16, "--size", "96x72", "--samples", 4, "--maps", 128, "--blend", tmp_path / "body.blend"]
+    made = blender("ASTEROID", ADDON / "render_asteroid.py", tmp_path / "body.json", tmp_path / "body.png", *options, *source(by))
+    assert made["by"] == by and made["atlas"] == ["atlas"] and made["bent"] and made["normals"]
+    assert sorted(made["images"]) == ["Astrolith colours", "Astrolith normal"]
+    assert (tmp_path / "body.blend").stat().st_size > 100_000
+
+
+@pytest.mark.parametrize("by", ["package", "synth"])
 def test_colours_of_vertices_are_kept(blender, tmp_path, by):
     image = png_of(np.random.default_rng(1).integers(0, 256, (32, 32), dtype=np.uint8))
     (tmp_path / "rust.png").write_bytes(image)

@@ -117,6 +117,41 @@ def body_by_program(file, resolution, seed, labels):
         return read_ply(output)
 
 
+def read_obj(file):
+    """An .obj of synth with an atlas: vertices, normals, triangles, and the atlas's coordinates of their corners."""
+    rows = {"v": [], "vt": [], "vn": [], "f": []}
+    with open(file, encoding="utf-8") as stream:
+        for line in stream:
+            kind, *values = line.split()
+            if kind in rows:
+                rows[kind].append(values)
+    corners = np.array([[corner.split("/") for corner in row] for row in rows["f"]], np.int64) - 1
+    vertices, coordinates, normals = (np.array(rows[kind], float) for kind in ("v", "vt", "vn"))
+    return {"vertices": vertices, "normals": normals, "faces": corners[..., 0], "uv": coordinates[corners[..., 1]]}
+
+
+def body_with_maps(astrolith, file, resolution, seed, side):
+    """A body with an atlas, and its baked maps of normals and colours as images that are stored in the scene."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = os.path.join(folder, "body.obj")
+        if astrolith:
+            try:
+                astrolith.synth(file, output=output, resolution=resolution, seed=seed, uv="charts", bake=side)
+            except (ValueError, RuntimeError) as error:
+                raise RecipeError(str(error)) from None
+        else:
+            options = ["--resolution", resolution, *(["--seed", seed] if seed is not None else [])]
+            run_synth([file, "-o", output, "--uv", "charts", "--bake", side, *options])
+        images = {}
+        for use in ("normal", "color"):
+            png = os.path.join(folder, f"body_{use}.png")
+            if os.path.exists(png):
+                images[use] = bpy.data.images.load(png)
+                images[use].name = f"Astrolith {use}"
+                images[use].pack()
+        return read_obj(output), images
+
+
 def texture_of(astrolith, file, seed):
     """The recipe's colours as an image that is stored in the scene."""
     with tempfile.TemporaryDirectory() as folder:
@@ -158,6 +193,8 @@ def mesh_data(name, body, scale):
     data.validate()
     if len(data.vertices) == len(vertices):
         data.normals_split_custom_set_from_vertices(body["normals"])
+    if "uv" in body:
+        data.uv_layers.new(name="atlas").data.foreach_set("uv", np.ascontiguousarray(body["uv"], np.float32).ravel())
     add_attributes(data, body, scale)
     return data
 
@@ -209,6 +246,23 @@ def material_of(name, image, texture_length, with_colors):
     return material
 
 
+def add_maps(material, images):
+    """Links baked maps, which lie on the atlas: colours, and normals in tangent space."""
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    surface = nodes["Principled BSDF"]
+    for use, image in images.items():
+        texture = nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        if use == "color":
+            links.new(texture.outputs["Color"], surface.inputs["Base Color"])
+            continue
+        image.colorspace_settings.name = "Non-Color"
+        bend = nodes.new("ShaderNodeNormalMap")
+        bend.uv_map = "atlas"
+        links.new(texture.outputs["Color"], bend.inputs["Color"])
+        links.new(bend.outputs["Normal"], surface.inputs["Normal"])
+
+
 def read_recipe(file):
     try:
         with open(file, encoding="utf-8") as stream:
@@ -221,21 +275,29 @@ def read_recipe(file):
     return recipe
 
 
-def make_asteroid(file, resolution, seed, longest_side):
-    """A new object: the body of a recipe, in metres, or scaled to `longest_side` Blender units where that is above 0."""
+def make_asteroid(file, resolution, seed, longest_side, maps=0):
+    """A new object: the body of a recipe, in metres, or scaled to `longest_side` Blender units where that is above 0.
+
+    With `maps` above 0 it has baked maps of so many texels along a side.
+    """
     recipe, astrolith = read_recipe(file), package()
     labels = not recipe.get("erosion") and bool(recipe.get("layers"))
     by = (lambda *options: body_by_package(astrolith, *options)) if astrolith else body_by_program
-    body = by(file, resolution, seed, labels)
+    images = {}
+    if maps > 0:
+        body, images = body_with_maps(astrolith, file, resolution, seed, maps)
+    else:
+        body = by(file, resolution, seed, labels)
     metres = METRES[recipe["length_unit"]]
     extent = float(np.ptp(body["vertices"], axis=0).max())
     scale = longest_side / extent if longest_side > 0 else metres
     name = os.path.splitext(os.path.basename(file))[0]
     data = mesh_data(name, body, scale)
     painted = [layer for layer in recipe.get("layers") or [] if layer.get("type") == "gabor" and layer.get("color")]
-    image = texture_of(astrolith, file, seed) if painted else None
+    image = texture_of(astrolith, file, seed) if painted and "color" not in images else None
     length = TEXTURE_SIDE * painted[0].get("pixel_size", 1.0) * scale if painted else 1.0
     data.materials.append(material_of(name, image, length, len(data.color_attributes) > 0))
+    add_maps(data.materials[0], images)
     made = bpy.data.objects.new(name, data)
     made["astrolith_recipe"] = file
     made["astrolith_seed"] = recipe.get("seed", 1) if seed is None else seed
@@ -260,10 +322,13 @@ class AddAsteroid(bpy.types.Operator, ImportHelper):
     longest_side: FloatProperty(name="Longest side", default=2.0, min=0.0,
                                 description="Blender units; 0 keeps the true size, a Blender unit a metre")
 
+    maps: IntProperty(name="Maps", default=0, min=0, max=8192,
+                      description="Texels along a side of maps that show what the mesh is too coarse for, 64 or more; 0: none")
+
     def execute(self, context):
         try:
             made = make_asteroid(bpy.path.abspath(self.filepath), self.resolution,
-                                 None if self.own_seed else self.seed, self.longest_side)
+                                 None if self.own_seed else self.seed, self.longest_side, self.maps)
         except RecipeError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
