@@ -3,6 +3,7 @@
 import json
 import shutil
 import subprocess
+import time
 
 import astrolith
 import numpy as np
@@ -88,10 +89,19 @@ def test_godot_has_axes_units_and_maps(rock, tmp_path):
     (tmp_path / "project.godot").write_text('[application]\nconfig/name="rock"\n')
     (tmp_path / "look.gd").write_text(GODOT.replace("    ", "\t"))
     environment = {"HOME": str(tmp_path), "PATH": "/usr/bin:/bin", "LANG": "en_US.UTF-8"}
-    run = lambda *words: subprocess.run(["godot3-server", "--path", tmp_path, *words], capture_output=True, text=True,
-                                        timeout=200, env=environment)  # fmt: skip
-    run("--editor", "--quit")
-    thing, coarser = sorted(found_in(run("-s", "look.gd")), key=lambda thing: thing["name"])
+    command = ["godot3-server", "--path", tmp_path]
+    # The editor imports the file, but does not always end by itself.
+    editor = subprocess.Popen([*command, "--editor"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    try:
+        end = time.monotonic() + 150
+        while not list(tmp_path.glob(".import/rock.glb-*.md5")) and time.monotonic() < end:
+            time.sleep(0.5)
+        time.sleep(2)  # for images that follow
+    finally:
+        editor.kill()
+        editor.wait()
+    looked = subprocess.run([*command, "-s", "look.gd"], capture_output=True, text=True, timeout=100, env=environment)
+    thing, coarser = sorted(found_in(looked), key=lambda thing: thing["name"])
     assert coarser["name"] == "body_lod1" and coarser["normal"] == 128
     x, y, z = size_of(rock[0])
     np.testing.assert_allclose(thing["size"], [x, z, y], rtol=1e-3)  # +y is up

@@ -142,7 +142,9 @@ class _Model:
         self.inertia = {"ixx": i[0, 0], "iyy": i[1, 1], "izz": i[2, 2], "ixy": i[0, 1], "ixz": i[0, 2], "iyz": i[1, 2]}
 
     def sdf(self) -> str:
-        geometry = lambda file: f"<geometry><mesh><uri>{escape(file)}</uri></mesh></geometry>"
+        def geometry(file: str) -> str:
+            return f"<geometry><mesh><uri>{escape(file)}</uri></mesh></geometry>"
+
         moments = "".join(f"<{k}>{v:.9g}</{k}>" for k, v in self.inertia.items())
         collisions = "".join(
             f"\n      <collision name='part{k}'>{geometry(file)}</collision>" for k, file in enumerate(self.parts)
@@ -163,7 +165,9 @@ class _Model:
 """
 
     def urdf(self) -> str:
-        geometry = lambda file: f"<geometry><mesh filename={quoteattr(file)}/></geometry>"
+        def geometry(file: str) -> str:
+            return f"<geometry><mesh filename={quoteattr(file)}/></geometry>"
+
         moments = " ".join(f'{k}="{v:.9g}"' for k, v in self.inertia.items())
         collisions = "".join(f"\n    <collision>{geometry(file)}</collision>" for file in self.parts)
         return f"""<?xml version="1.0"?>

@@ -42,7 +42,7 @@ TEST_F(SynthRefusal, OptionsThatMakeNoSense) {
               // Formats that do not hold what is asked for.
               {"-o a.obj --points", ".ply"},
               {"-o a.obj --labels", ".ply"},
-              {"-o a.obj --uv", ".glb"},
+              {"-o a.stl --uv", ".glb"},
               {"-o a.obj --gravity 2000 6", "a.obj"},
               {"-o a.icq --even", "leave out --even"},
               // Gravity.
