@@ -145,29 +145,51 @@ MeshEstimate MeshEstimator::at(int resolution) {
   return estimate;
 }
 
+namespace {
+
+// The resolution that has so many triangles, where `resolution` has `found`.
+int nearer_resolution(int resolution, double found, double triangles) {
+  const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
+  return static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
+}
+
+[[noreturn]] void fail_as_too_small() {
+  throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
+}
+
+}  // namespace
+
+int MeshEstimator::counted_resolution(int resolution, double triangles) {
+  constexpr int kMostCounts = 4;
+  for (int k = 0; k < kMostCounts; ++k) {
+    const double found = made_at(resolution).triangles;
+    if (!(found > 0.0)) fail_as_too_small();
+    const int next = nearer_resolution(resolution, found, triangles);
+    if (next == resolution) break;
+    resolution = next;
+  }
+  return resolution;
+}
+
 int MeshEstimator::resolution_for(double triangles) {
   constexpr int kCells = 64, kTriedProbes = 24, kProbes = 96;
+  constexpr int kMostCounted = 32;  // cells of meshes that are counted sooner than probed
   // A plane in a lattice has this many triangles on a square of the lattice's edge, in the mean over all
   // directions.
   constexpr double kOfSquare = 3.0;
   make_coarse(kCells);
   const ProbedSurface surface(coarse_, region_.is_patch ? space_of(field_, region_, kCells) : kEverywhere);
-  if (surface.empty())
-    throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
-  int resolution = kCells;
-  double step = grid_of(field_, region_, resolution).step;
+  if (surface.empty()) fail_as_too_small();
+  const double step = grid_of(field_, region_, kCells).step;
   double found = surface.area() * kOfSquare / (step * step);
-  const auto nearer = [&] {
-    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
-    return static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
-  };
+  int resolution = nearer_resolution(kCells, found, triangles);
+  if (resolution <= kMostCounted && region_.tile.count == 1) return counted_resolution(resolution, triangles);
   for (const int probes : {kTriedProbes, kProbes}) {
-    resolution = nearer();
     found = surface.area() * probe(surface, resolution, probes).triangles;
-    if (!(found > 0.0))
-      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
+    if (!(found > 0.0)) fail_as_too_small();
+    if (probes == kTriedProbes) resolution = nearer_resolution(resolution, found, triangles);
   }
-  resolution = nearer();
+  resolution = nearer_resolution(resolution, found, triangles);
   if (resolution == kMaxResolution && found < 0.9 * triangles) {
     throw InputError(
         fmt::format("triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",

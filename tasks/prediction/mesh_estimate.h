@@ -40,6 +40,8 @@ class MeshEstimator {
 
  private:
   MeshEstimate made_at(int resolution);
+  // The resolution near this one whose mesh has about so many triangles, by making meshes.
+  int counted_resolution(int resolution, double triangles);
   void make_coarse(int cells);
   double step_at(int resolution) const;
   ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
