@@ -11,8 +11,8 @@ packages=(
 fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libcairo2-dev libspectra-dev libcgal-dev libjs-three)
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of
 # sanitized builds, --package what makes a Debian package, --python what builds the Python package, --browser what opens the
-# pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, and --notebooks the
-# packages of the notebooks.
+# pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, --engines what tests
+# of assets load them in, and --notebooks the packages of the notebooks.
 for option in "$@"; do
   case $option in
     --synth) fitting=() ;;
@@ -22,6 +22,7 @@ for option in "$@"; do
     --browser) packages+=(chromium chromium-driver python3-selenium python3-numpy python3-pil) ;;
     --sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
     --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
+    --engines) packages+=(blender godot3-server) ;;
     --web) packages+=(emscripten nodejs libjs-three) ;;
     --python) packages+=(python3-dev python3-venv) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
