@@ -7,6 +7,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "recipe/recipe_json.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/field/layer_join.h"

@@ -259,6 +259,7 @@ void synthesize(Job& job, const SynthOptions& options) {
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
   require_body(recipe, options.recipe);
+  if (!options.page.empty()) check_page(recipe, options.recipe);  // before a variation is searched for
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
   const BodyRequest& body = options.body;
   const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
@@ -280,7 +281,6 @@ void synthesize(Job& job, const SynthOptions& options) {
     return work(job, options.members, body, {whole, file, draw});
   }
   const Recipe made = is_varied ? variation(recipe, job.seed) : whole;
-  if (!options.page.empty()) check_page(made, options.recipe);
   if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
   if (!options.page.empty()) write_page(made, options.recipe, options.page);
   if (body.output.empty() && !body.mesh.size.only_predict) return;
