@@ -64,7 +64,7 @@ std::vector<std::uint8_t> blurred_occlusion(std::span<const std::uint8_t> open, 
           sum += weight * value, weights += weight;
         }
       }
-      shares[at(x, y)] = static_cast<std::uint8_t>((255 * sum + weights / 2) / weights);
+      shares[at(x, y)] = static_cast<std::uint8_t>((255 * sum + weights / 2) / std::max(weights, 1));
     }
   });
   return shares;
