@@ -106,7 +106,7 @@ TEST(BakedMaps, DoNotDependOnThreads) {
   EXPECT_EQ(one->maps.label, two->maps.label);
 }
 
-// Of a sphere no sky is hidden, normals are those of the interpolation, and the curvature is 1 / radius.
+// A sphere hides no sky, has the interpolated normals, and has the curvature 1 / radius.
 TEST(BakedMaps, OfASphereAreKnown) {
   const Baked baked(sphere_recipe(0.5), 64, 512);
   std::vector<double> curvatures;
