@@ -103,8 +103,13 @@ std::string unknown_option(const CLI::App& parser, const OptionTable& options) {
   for (const std::string& word : parser.remaining(true)) {
     const std::size_t dashes = word.find_first_not_of('-');
     if (!word.starts_with('-') || dashes == std::string::npos) continue;
-    const std::string nearest =
-        nearest_name(word.substr(dashes, word.find('=') - dashes), long_names(options));
+    const std::string name = word.substr(dashes, word.find('=') - dashes);
+    for (const OptionTable::Command& command : options.commands()) {
+      if (command.options->find("--" + name) != nullptr)
+        return word + ": is an option of '" + parser.get_name() + " " + command.name +
+               "'; write the command before it";
+    }
+    const std::string nearest = nearest_name(name, long_names(options));
     return word + ": there is no such option" +
            (nearest.empty() ? std::string() : "; did you mean --" + nearest + "?");
   }

@@ -68,6 +68,18 @@ TEST(Program, AMisspeltOptionIsNamedWithTheNearest) {
   EXPECT_EQ(complaint({"--colour"}), "tool: --colour: there is no such option; see tool --help\n");
 }
 
+TEST(Program, AnOptionBeforeItsCommandIsNamedWithIt) {
+  Program program("tool", "A program for tests.");
+  bool trees = false;
+  program.options.add_command("train", "learns").add_flag("--trees", trees, "trees");
+  std::vector<std::string> words{"tool", "--trees"};
+  std::vector<char*> argv{words[0].data(), words[1].data()};
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(program.run(2, argv.data(), [] { FAIL(); }), 2);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "tool: --trees: is an option of 'tool train'; write the command before it; see tool --help\n");
+}
+
 TEST(Program, ASummaryWithAWrongEndingIsRefusedBeforeTheWork) {
   const Outcome outcome = run({"--summary", "figures.txt"}, [](Program&) { FAIL(); });
   EXPECT_EQ(outcome.status, 2);
