@@ -151,7 +151,7 @@ void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& 
                   "{:.2f} % (two samplings of the target: {:.2f} %)",
                   counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
                   with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without,
-                  100 * fit.similarity, 100 * fit.similarity_floor));
+                  100 * fit.similarity.value, 100 * fit.similarity.floor));
   const PartsAndHandles made = parts_and_handles(fit.check.topology), wanted = parts_and_handles(target);
   if (made != wanted) {
     job.say(fmt::format("note: the fit has {}, the target {}; {}", made.words(), wanted.words(),
@@ -353,6 +353,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     return result;
   }
   if (limit.reached()) job.say("stopped at the time limit: this is the best so far");
+  fit.similarity = measure_similarity(target.surface, fit.check.mesh, arguments.fit.seed);
   if (arguments.bytes == 0) note_achieved(fit, recipe);
   if (!arguments.output.empty()) write_loaded_recipe(recipe, arguments.output);
   const std::optional<FitRealism> realism = judge_surface(job, arguments, target, recipe, limit);

@@ -18,16 +18,14 @@
 namespace astrolith {
 namespace {
 
-constexpr std::int64_t kSimilarityPoints = 5000;
-
 // Fractions of the bounding-box diagonal, except counts and ratios.
 std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
   const SurfaceDistanceReport& d = fit.check.distance;
   return {{"max_distance", d.max},
           {"mean_distance", d.mean},
           {"p99_distance", d.p99},
-          {"similarity", fit.similarity},
-          {"similarity_floor", fit.similarity_floor},
+          {"similarity", fit.similarity.value},
+          {"similarity_floor", fit.similarity.floor},
           {"volume_ratio", fit.check.volume_ratio}};
 }
 
@@ -92,10 +90,6 @@ void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeF
       has_relief ? std::max(options.check_resolution, static_cast<int>(std::min(cells, kMostCells)))
                  : options.check_resolution;
   fit.check = check_recipe(target, recipe, resolution, options.check_samples, options.seed);
-  const MeasuredSimilarity measured =
-      measure_similarity(target.surface, fit.check.mesh, PairFeatures::ahd, kSimilarityPoints, options.seed);
-  fit.similarity = measured.similarity;
-  fit.similarity_floor = measured.floor;
 }
 
 void note_achieved(const ShapeFitResult& fit, Recipe& recipe) {

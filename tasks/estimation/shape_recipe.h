@@ -26,9 +26,7 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
                                       int generations, EvaluationLog& log, CandidateEvaluator* evaluator,
                                       const Progress& progress, Recipe& recipe);
 
-// Measures the whole recipe as the fit measured its base: the fit's check and similarity become those of the
-// recipe. The similarity is that of the descriptor that `compare` uses by default (ahd), with 5,000 points
-// for each mesh.
+// Measures the whole recipe as the fit measured its base: the fit's check becomes that of the recipe.
 void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options,
                     ShapeFitResult& fit);
 

@@ -1,41 +1,37 @@
 #include "tasks/synthesis/comparison.h"
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/surface/evened_surface.h"
+#include "descriptor/surface/evened_similarity.h"
 #include "geometry/surface/surface_distance.h"
 #include "numerics/errors.h"
 #include "tasks/synthesis/alignment.h"
-#include "tasks/synthesis/describe_file.h"
 
 namespace astrolith {
 namespace {
 
-// Describes shapes by points that are as far apart on each, at which the surface is evened: what is finer
-// than the points on one mesh does not count. Each sampling of a shape has a seed of its own.
+// The result of work on a shape, whose name stands before what is wrong with it.
+template <typename Work>
+auto named(const NamedMesh& shape, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& e) {
+    throw InputError(shape.name + ": " + e.what());
+  }
+}
+
+// Describes shapes by points that are as far apart on each: what is finer on one mesh does not count.
 struct Sampler {
   const DescriptionOptions& options;
   const StageProgress& progress;
   std::vector<std::string>& remarks;
 
   ShapeHistogram operator()(const NamedMesh& shape, std::uint64_t which) const {
-    DescriptionOptions own = options;
-    own.seed = options.seed + which * 0x9e3779b97f4a7c15u;
-    const EvenedSurface even = evened(shape, own);
     ShapeDescription description =
-        describe_file(shape.name, even.points, even.normals, own, progress("describe"));
+        named(shape, [&] { return describe_evened(shape.mesh, for_sampling(options, which), progress); });
     if (which < 2) {
       for (const std::string& remark : description.remarks) remarks.push_back(shape.name + ": " + remark);
     }
     return std::move(description.histogram);
-  }
-
- private:
-  EvenedSurface evened(const NamedMesh& shape, const DescriptionOptions& own) const {
-    try {
-      return even_surface(shape.mesh, own.points, own.seed, progress("even"));
-    } catch (const InputError& e) {
-      throw InputError(shape.name + ": " + e.what());
-    }
   }
 };
 
@@ -55,14 +51,6 @@ void compare_histograms(const NamedMesh& a, const NamedMesh& b, const Sampler& s
   result["earth_movers"] = d.earth_movers;
 }
 
-SurfaceTree tree_of(const NamedMesh& shape) {
-  try {
-    return SurfaceTree(shape.mesh);
-  } catch (const InputError& e) {
-    throw InputError(shape.name + ": " + e.what());
-  }
-}
-
 void add_distances(const SurfaceDistanceReport& d, double diagonal, nlohmann::ordered_json& result) {
   result["mean_distance"] = d.mean / diagonal;
   result["p99_distance"] = d.p99 / diagonal;
@@ -78,7 +66,8 @@ void add_distances(const SurfaceDistanceReport& d, double diagonal, nlohmann::or
 Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const ComparisonOptions& options,
                           const StageProgress& progress) {
   // Trees refuse garbled meshes, so that they come first.
-  const SurfaceTree tree_of_a = tree_of(a), tree_of_b = tree_of(b);
+  const SurfaceTree tree_of_a = named(a, [&] { return SurfaceTree(a.mesh); }),
+                    tree_of_b = named(b, [&] { return SurfaceTree(b.mesh); });
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
   const std::uint64_t seed = options.description.seed;

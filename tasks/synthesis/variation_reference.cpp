@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/shape_description.h"
+#include "descriptor/surface/evened_similarity.h"
 
 namespace astrolith {
 namespace {
@@ -13,7 +13,7 @@ constexpr std::uint64_t kReferenceSeed = 1;
 ShapeHistogram histogram_of(const TriangleMesh& mesh, std::uint64_t seed) {
   DescriptionOptions options;
   options.seed = seed;
-  return describe_shape(mesh, options).histogram;
+  return describe_evened(mesh, options).histogram;
 }
 
 }  // namespace

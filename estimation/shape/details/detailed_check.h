@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "descriptor/shape_histogram.h"
 #include "estimation/shape/fit/fit_check.h"
 #include "recipe/recipe.h"
 
@@ -13,15 +12,5 @@ namespace astrolith {
 // is in the target's frame.
 FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, int resolution, std::int64_t samples,
                       std::uint64_t seed);
-
-// The similarity of two shapes, and the similarity of two samplings of the first. A candidate above this
-// floor cannot be told from a perfect one. Both are at most 1.
-struct MeasuredSimilarity {
-  double similarity = 0.0, floor = 0.0;
-};
-
-// Compares histograms of `points` fresh Poisson-disk samples each.
-MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,
-                                      PairFeatures features, std::int64_t points, std::uint64_t seed);
 
 }  // namespace astrolith

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "descriptor/histogram_distance.h"
-#include "descriptor/shape_description.h"
 #include "estimation/shape/fit/containment.h"
 #include "estimation/shape/fit/global_parameter_search.h"
 #include "estimation/shape/fit/rounded_body.h"
@@ -28,20 +26,10 @@ constexpr double kMostDigitsLoss = 0.01;
 // each, and 6 to 18 % at 3.5. More metaballs are smaller and need finer steps.
 constexpr double kText = 45.0, kBytesEach = 4.1, kMoreForTwice = 0.15;
 
-constexpr std::int64_t kSearchSamples = 800;       // the cost of a fitness grows with the square
-constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
+constexpr std::int64_t kSearchSamples = 800;  // the cost of a fitness grows with the square
 
 // Independent random streams of one seed.
-enum Stream : std::uint64_t {
-  kSurface = 1,
-  kContainment,
-  kSearch,
-  kFreshTarget,
-  kFreshFit,
-  kFreshAgain,
-  kDistances,
-  kShellsAround
-};
+enum Stream : std::uint64_t { kSurface = 1, kContainment, kSearch, kDistances = 7, kShellsAround };
 
 std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u * seed + stream; }
 
@@ -134,14 +122,6 @@ RefinedBody refine_model(const TargetBody& target, const Packing& packing, const
   return {std::move(fit), std::move(body)};
 }
 
-// The histogram of fresh samples, with the default features of the program `compare`.
-ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
-  DescriptionOptions options;
-  options.points = kSimilaritySamples;
-  options.seed = seed;
-  return describe_shape(mesh, options).histogram;
-}
-
 }  // namespace
 
 int spheres_for_bytes(int bytes) {
@@ -159,10 +139,6 @@ void measure_fit(const TargetBody& target, const ShapeFitOptions& options, Shape
   const std::uint64_t seed = options.seed;
   result.check = check_fit(target, in_target_frame(target, result.body), options.check_resolution,
                            options.check_samples, stream_seed(seed, kDistances));
-  const ShapeHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
-  result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
-  result.similarity_floor =
-      similarity(wanted, fresh_histogram(target.surface, stream_seed(seed, kFreshAgain)));
 }
 
 ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& options,

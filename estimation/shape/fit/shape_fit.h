@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "descriptor/surface/evened_similarity.h"
 #include "estimation/optimize/optimizer.h"
 #include "estimation/shape/fit/adaptive_fit.h"
 #include "estimation/shape/fit/fit_check.h"
@@ -43,16 +44,14 @@ int spheres_for_bytes(int bytes);
 int bytes_for_spheres(int spheres);
 
 struct ShapeFitResult {
-  MetaballBody body;        // in the file's frame and unit
-  FitCheck check;           // measures the body, in the target's frame
-  TriangleMesh base_mesh;   // of the metaballs alone where `check` measures details too; else empty
-  double similarity = 0.0;  // adaptive hybrid descriptor, 5,000 fresh Poisson-disk samples of target and fit
-  // The similarity of two samplings of the target. A fit above this floor cannot be told from a perfect one.
-  double similarity_floor = 0.0;
-  double filling_rate = 0.0;                  // the packing's volume over the target's
-  double base_similarity = 0.0;               // the best candidate of the search, on the search's samples
-  int base_spheres = 0;                       // the number of spheres that the search chose
-  std::int64_t evaluations = 0;               // of the search's fitness
+  MetaballBody body;              // in the file's frame and unit
+  FitCheck check;                 // measures the body, in the target's frame
+  TriangleMesh base_mesh;         // of the metaballs alone where `check` measures details too; else empty
+  MeasuredSimilarity similarity;  // of target and fit, where measure_similarity() was called
+  double filling_rate = 0.0;      // the packing's volume over the target's
+  double base_similarity = 0.0;   // the best candidate of the search, on the search's samples
+  int base_spheres = 0;           // the number of spheres that the search chose
+  std::int64_t evaluations = 0;   // of the search's fitness
   std::vector<double> search_history;         // the least 1 - similarity after each generation
   std::vector<ConvergencePoint> convergence;  // after every refinement
   // Progress asked to stop: the body is the best so far, and nothing has measured it yet (measure_fit).
@@ -66,7 +65,7 @@ ShapeFitResult fit_shape(
     const TargetBody& target, const ShapeFitOptions& options,
     const StageProgress& progress = [](const std::string&) { return Progress(); });
 
-// Measures result.body as fit_shape does at its end. Sets check, similarity and similarity_floor.
+// Measures result.body as fit_shape does at its end: sets `check`.
 void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result);
 
 }  // namespace astrolith

@@ -144,8 +144,8 @@ PageTable distance_table(const SurfaceDistanceReport& d) {
 
 PageTable likeness_table(const ShapeFitResult& fit) {
   return {{"likeness", ""},
-          {{"similarity of the shape histograms (ahd)", percent(fit.similarity)},
-           {"similarity of two samplings of the target", percent(fit.similarity_floor)},
+          {{"similarity of the shape histograms (ahd)", percent(fit.similarity.value)},
+           {"similarity of two samplings of the target", percent(fit.similarity.floor)},
            {"volume of the fit over that of the target", number(fit.check.volume_ratio, "%.5f")}}};
 }
 
