@@ -17,7 +17,7 @@ geometry/points            -> numerics
 geometry/surface           -> numerics geometry/. geometry/points
 gravity                    -> numerics geometry
 descriptor                 -> numerics geometry
-descriptor/surface         -> numerics geometry gravity
+descriptor/surface         -> numerics geometry gravity descriptor
 descriptor/spectrum        -> numerics geometry
 descriptor/classification  -> numerics geometry descriptor
 synthesis/noise            -> numerics recipe
