@@ -116,6 +116,18 @@ std::string unknown_option(const CLI::App& parser, const OptionTable& options) {
   return "";
 }
 
+// What is wrong with a command line whose options all exist. CLI11 says "At Most 1 required but received 2".
+std::string plain_words(const CLI::ParseError& error, const CLI::App& parser) {
+  const std::string text = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    return text.substr(0, text.find(':')) +
+           (text.ends_with("missing") ? ": a value is missing" : ": is given twice, or with too many values");
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !parser.remaining(true).empty())
+    return parser.remaining(true).front() + ": belongs to no option, and no argument is left for it";
+  return text;
+}
+
 // Hands a row of the table to CLI11, which cuts the command line into words.
 void declare(OptionRow& row, CLI::App& parser) {
   CLI::Option* option = nullptr;
@@ -195,7 +207,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return parser.exit(e);  // --help, --version
     const std::string unknown = unknown_option(parser, options);
-    return refuse(unknown.empty() ? e.what() : unknown);
+    return refuse(unknown.empty() ? plain_words(e, parser) : unknown);
   } catch (const InputError& e) {
     return refuse(e.what());
   }

@@ -65,6 +65,11 @@ TEST(Program, AMisspeltOptionIsNamedWithTheNearest) {
               "tool: " + std::string(wrong) + ": " + meant + "summary?; see tool --help\n");
   }
   EXPECT_NE(complaint({"--treads", "2"}).find(meant + "threads?"), std::string::npos);
+  EXPECT_EQ(complaint({"--seed"}), "tool: --seed: a value is missing; see tool --help\n");
+  EXPECT_EQ(complaint({"--seed", "1", "--seed", "2"}),
+            "tool: --seed: is given twice, or with too many values; see tool --help\n");
+  EXPECT_EQ(complaint({"a", "b"}),
+            "tool: a: belongs to no option, and no argument is left for it; see tool --help\n");
   EXPECT_EQ(complaint({"--colour"}), "tool: --colour: there is no such option; see tool --help\n");
 }
 
