@@ -205,7 +205,7 @@ double stated_side(const StatedScale& scale, const std::string& name) {
 std::string in_brackets(const std::string& words) { return words.empty() ? "" : " (" + words + ")"; }
 
 // What the file states of its scale is taken where no option gives it, and said.
-void take_stated_scale(Job& job, const ColorImageFile& photo, PhotoFitArguments& o) {
+void take_stated_scale(Job& job, const ImageFile& photo, PhotoFitArguments& o) {
   const double missing = missing_share(photo.planes.front());
   o.has_gaps = missing > 0.0;
   std::vector<std::string> words;
@@ -385,7 +385,7 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   require_outputs(o);
   if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
   predict_memory(job, o, photo_options(job, o));
-  ColorImageFile photo = o.in_memory ? ColorImageFile{*o.in_memory, {}}
+  ImageFile photo = o.in_memory ? ImageFile{*o.in_memory, {}}
                                      : read_image(o.image, o.channels == "pca", job.progress("photo"));
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   take_stated_scale(job, photo, o);

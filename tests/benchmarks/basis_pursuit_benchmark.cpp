@@ -69,7 +69,7 @@ void write_problem(const std::string& stem, const PowerSpectrum& spectrum, std::
 }
 
 void write_problems(const std::string& photo, const std::filesystem::path& folder) {
-  PowerSpectrum periodogram = exemplar_periodogram(corner(read_grey_image(photo).image));
+  PowerSpectrum periodogram = exemplar_periodogram(corner(read_image(photo, false).planes[0]));
   const double variance = periodogram.variance();
   for (double& p : periodogram.power) p /= variance;
   const std::string stem = (folder / std::filesystem::path(photo).stem()).string();

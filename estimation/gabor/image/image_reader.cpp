@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "estimation/gabor/image/missing_ground.h"
-#include "estimation/gabor/image/photo_codec_internal.h"
 #include "estimation/gabor/image/raster_file_internal.h"
 #include "numerics/errors.h"
 
@@ -124,8 +123,8 @@ TakeRow into(std::vector<GreyImage>& planes) {
   };
 }
 
-ColorImageFile empty_planes(std::size_t count, double pixels) {
-  ColorImageFile result;
+ImageFile empty_planes(std::size_t count, double pixels) {
+  ImageFile result;
   result.planes.resize(count);
   for (GreyImage& plane : result.planes) plane.values.reserve(static_cast<std::size_t>(pixels));
   return result;
@@ -137,10 +136,18 @@ void take_mean_away(GreyImage& heights) {
   for (double& v : heights.values) v -= mean;
 }
 
-ColorImageFile read_raster(const std::filesystem::path& file, std::size_t count, const Progress& progress) {
+}  // namespace
+
+ImageSize read_image_size(const std::filesystem::path& file) {
+  const RasterFile raster(file);
+  require_fitting(raster.width(), raster.height(), file);
+  return {raster.width(), raster.height()};
+}
+
+ImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress) {
   RasterFile raster(file);
   require_fitting(raster.width(), raster.height(), file);
-  ColorImageFile result = empty_planes(count, static_cast<double>(raster.width()) * raster.height());
+  ImageFile result = empty_planes(colors ? 3 : 1, static_cast<double>(raster.width()) * raster.height());
   raster.read(into(result.planes), progress);
   result.remarks = raster.remarks();
   result.scale = raster.scale();
@@ -158,51 +165,6 @@ ColorImageFile read_raster(const std::filesystem::path& file, std::size_t count,
     if (heights && result.scale->pixel_width > 0.0) take_mean_away(plane);
   }
   return result;
-}
-
-ColorImageFile read_planes(const std::filesystem::path& file, std::size_t count,
-                           const Progress& progress = {}) {
-  const std::optional<PhotoHeader> header = read_photo_header(file);
-  if (!header) return read_raster(file, count, progress);
-  require_fitting(header->width, header->height, file);
-  ColorImageFile result = empty_planes(count, static_cast<double>(header->width) * header->height);
-  const double not_opaque = share_not_opaque(file, *header);
-  if (not_opaque > 0.0) result.remarks.push_back(alpha_remark(not_opaque));
-  if (header->more_frames) result.remarks.emplace_back("animated: only the first frame used");
-  read_photo(file, into(result.planes));
-  return result;
-}
-
-}  // namespace
-
-std::string alpha_remark(double share) {
-  return fmt::format(
-      "alpha ignored: {:.1f} % of the pixels are not opaque, and count with the colour stored under it",
-      100.0 * share);
-}
-
-ImageSize read_image_size(const std::filesystem::path& file) {
-  ImageSize size;
-  if (const std::optional<PhotoHeader> header = read_photo_header(file)) {
-    require_fitting(header->width, header->height, file);
-    size = {static_cast<int>(header->width), static_cast<int>(header->height)};
-  } else {
-    const RasterFile raster(file);
-    require_fitting(raster.width(), raster.height(), file);
-    size = {raster.width(), raster.height()};
-  }
-  return size;
-}
-
-ImageFile read_grey_image(const std::filesystem::path& file) {
-  ColorImageFile read = read_planes(file, 1);
-  return {std::move(read.planes.front()), std::move(read.remarks), read.scale};
-}
-
-ColorImageFile read_color_image(const std::filesystem::path& file) { return read_planes(file, 3); }
-
-ColorImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress) {
-  return read_planes(file, colors ? 3 : 1, progress);
 }
 
 }  // namespace astrolith

@@ -13,14 +13,8 @@
 namespace astrolith {
 
 struct ImageFile {
-  GreyImage image;
+  std::vector<GreyImage> planes;     // red, green and blue, of the same size, or grey alone
   std::vector<std::string> remarks;  // the parts of the file that were not used, such as "alpha ignored"
-  std::optional<StatedScale> scale = {};
-};
-
-struct ColorImageFile {
-  std::vector<GreyImage> planes;  // red, green and blue, of the same size, or grey alone
-  std::vector<std::string> remarks;
   std::optional<StatedScale> scale = {};
 };
 
@@ -34,7 +28,7 @@ struct ImageSize {
 inline constexpr double kLargestImagePixels = 67108864.0;
 
 // The functions below read photos (PNG, JPEG, WebP) and rasters (TIFF, GeoTIFF and others: docs/pictures.md),
-// which they tell by their first bytes. Palettes are expanded and the EXIF orientation is honoured. Alpha is
+// which they tell by their first bytes. Palettes are expanded and the EXIF orientation of a JPEG or TIFF is honoured. Alpha is
 // ignored: the stored colours of transparent pixels count, unless the file says that alpha is multiplied into
 // them, which is undone. If a file has several pages or frames, the first is read. Integers are scaled so
 // that full scale is 1. Floats, signed integers and values with a scale or a unit of their own are as the
@@ -46,18 +40,9 @@ inline constexpr double kLargestImagePixels = 67108864.0;
 // Width and height as stored, in pixels, from the header alone.
 ImageSize read_image_size(const std::filesystem::path& file);
 
-// Reads a grey image. Colours become the luma 0.2126 R + 0.7152 G + 0.0722 B of the stored values. The values
-// of photos are gamma-encoded, and stay so.
-ImageFile read_grey_image(const std::filesystem::path& file);
-
-// Reads a colour image. If the file is grey, the three planes are equal.
-ColorImageFile read_color_image(const std::filesystem::path& file);
-
-// Reads a colour image, or a grey one as the only plane. Throws WorkError where progress asks to stop, which
-// it can while a raster is read.
-ColorImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress = {});
-
-// The remark on pixels that are not opaque, by their share in (0, 1].
-std::string alpha_remark(double share);
+// Reads three planes of colours, equal ones of a grey file, or a grey plane: colours become the luma
+// 0.2126 R + 0.7152 G + 0.0722 B of the stored values. The values of photos are gamma-encoded, and stay so.
+// Throws WorkError where progress asks to stop.
+ImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress = {});
 
 }  // namespace astrolith

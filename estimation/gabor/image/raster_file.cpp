@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "estimation/gabor/image/raster_file_internal.h"
 #include "estimation/gabor/image/tiff_tags_internal.h"
 #include "numerics/errors.h"
+#include "numerics/files/input_file.h"
 
 namespace astrolith {
 namespace {
@@ -33,7 +35,9 @@ constexpr std::array kFormats{
     Format{"PDS4", GDALRegister_PDS4},       Format{"VICAR", GDALRegister_VICAR},
     Format{"ENVI", GDALRegister_ENVI},       Format{"EHdr", GDALRegister_EHdr},
     Format{"FITS", GDALRegister_FITS},       Format{"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
-    Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA}};
+    Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA},
+    Format{"PNG", GDALRegister_PNG},         Format{"JPEG", GDALRegister_JPEG},
+    Format{"WEBP", GDALRegister_WEBP}};
 
 // While an object of this class lives, this thread's GDAL prints nothing, starts no thread that would, writes
 // nothing beside its input and asks no network.
@@ -74,6 +78,16 @@ std::string structure(GDALMajorObject& object, const char* key) {
 
 std::string driver_of(GDALDataset& dataset) { return dataset.GetDriverName(); }
 
+// Whether a PNG or a WebP says that it is animated: PNG by a chunk before its pixels, WebP in its first.
+bool is_animated(const std::string& name) {
+  std::string start(1 << 16, '\0');
+  std::ifstream in(name, std::ios::binary);
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  const bool webp = start.compare(8, 8, "WEBPVP8X") == 0;
+  return webp ? (start[20] & 2) != 0
+              : start.compare(1, 3, "PNG") == 0 && start.find("acTL") < start.find("IDAT");
+}
+
 // A label names the file of its pixels, and might name any other.
 void require_own_folder(GDALDataset& dataset, const std::string& name) {
   const CPLStringList files(dataset.GetFileList());
@@ -113,6 +127,7 @@ struct RasterFile::Bands {
   std::string unit;                   // of the values, as the file spells it; empty: none
   bool as_stated = false;             // the values are the file's own, and not shares of a full scale
   bool fourth_unused = false;
+  bool see_through = false;  // GDAL's mask and palette say where a picture is transparent
   std::size_t not_opaque = 0;
 
   int channels() const { return palette != nullptr ? 3 : static_cast<int>(values.size()); }
@@ -172,6 +187,7 @@ int RasterFile::height() const { return dataset_->GetRasterYSize(); }
 
 RasterFile::RasterFile(const std::filesystem::path& file)
     : name_(file.string()), bands_(std::make_unique<Bands>()) {
+  require_plain_file(file);
   const TiffTags tags = read_tiff_tags(file);
   orientation_ = tags.orientation;
   bands_->premultiplied = tags.premultiplied;
@@ -185,6 +201,10 @@ RasterFile::RasterFile(const std::filesystem::path& file)
         "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
   }
   require_own_folder(*dataset_, name_);
+  if (const char* turned = dataset_->GetMetadataItem("EXIF_Orientation"))
+    orientation_ = std::clamp(std::atoi(turned), 1, 8);
+  animated_ = is_animated(name_);
+  if (animated_ && driver_of(*dataset_) == "WEBP") fail("an animated WebP; save one frame of it as PNG");
   find_bands();
   find_scale();
 }
@@ -220,6 +240,7 @@ void RasterFile::find_bands() {
   b.palette = indices && !b.white_is_zero ? first.GetColorTable() : nullptr;
   b.signed_bytes = structure(first, "PIXELTYPE") == "SIGNEDBYTE";
   const std::string driver = driver_of(*dataset_);
+  b.see_through = driver == "PNG";
   b.isis_marks = driver.rfind("ISIS", 0) == 0 && first.GetRasterDataType() == GDT_Int16;
   b.unit = first.GetUnitType();
   b.factor = first.GetScale();
@@ -288,9 +309,11 @@ void RasterFile::find_scale() {
 std::vector<std::string> RasterFile::remarks() const {
   std::vector<std::string> remarks;
   if (bands_->not_opaque > 0 && !bands_->premultiplied && !(scale_ && scale_->heights)) {
-    remarks.push_back(
-        alpha_remark(static_cast<double>(bands_->not_opaque) / (static_cast<double>(width()) * height())));
+    remarks.push_back(fmt::format(
+        "alpha ignored: {:.1f} % of the pixels are not opaque, and count with the colour stored under it",
+        100.0 * static_cast<double>(bands_->not_opaque) / (static_cast<double>(width()) * height())));
   }
+  if (animated_) remarks.emplace_back("animated: only the first frame used");
   if (bands_->fourth_unused) remarks.emplace_back("only the first three of four bands used");
   if (dataset_->GetMetadataItem("SUBDATASET_2_NAME", "SUBDATASETS") != nullptr)
     remarks.emplace_back("only the first of several pages used");
@@ -325,7 +348,7 @@ void RasterFile::read(const TakeRow& take, const Progress& progress) {
   const auto columns = static_cast<std::size_t>(width());
   const auto channels = static_cast<std::size_t>(b.channels());
   std::vector<double> stored(columns), row(columns * channels), alpha(b.alpha != nullptr ? columns : 0);
-  std::vector<std::uint8_t> valid(columns), band_valid(columns);
+  std::vector<std::uint8_t> valid(columns), band_valid(columns), clear(columns);
   b.not_opaque = 0;
   for (int y = 0; y < height(); ++y) {
     if (!report(progress, static_cast<double>(y) / height(), "read"))
@@ -343,6 +366,7 @@ void RasterFile::read(const TakeRow& take, const Progress& progress) {
         if (b.palette != nullptr) {
           GDALColorEntry entry{};
           b.palette->GetColorEntryAsRGB(static_cast<int>(v), &entry);
+          clear[x] = b.see_through && entry.c4 < 255;
           const double rgb[] = {entry.c1 / 255.0, entry.c2 / 255.0, entry.c3 / 255.0};
           std::copy(rgb, rgb + 3, row.begin() + static_cast<std::ptrdiff_t>(3 * x));
           continue;
@@ -357,12 +381,12 @@ void RasterFile::read(const TakeRow& take, const Progress& progress) {
     if (!whole) fail("ends too early or is damaged; fetch it again");
     for (std::size_t x = 0; x < columns; ++x) {
       const double opacity = b.alpha != nullptr ? alpha[x] / b.opaque : 1.0;
-      b.not_opaque += opacity < 1.0;
+      b.not_opaque += opacity < 1.0 || clear[x] || (b.see_through && !valid[x]);
       const bool erased = !(opacity > 0.0) && (b.premultiplied || (scale_ && scale_->heights));
       for (std::size_t k = 0; k < channels; ++k) {
         double& v = row[x * channels + k];
         if (b.premultiplied && !b.as_stated && opacity > 0.0) v = std::min(v / opacity, 1.0);
-        if (!valid[x] || erased) v = kMissing;
+        if ((!valid[x] && !b.see_through) || erased) v = kMissing;
       }
     }
     take(row, b.channels());

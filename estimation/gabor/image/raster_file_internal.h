@@ -1,20 +1,25 @@
-// Reads rasters other than photos by GDAL: TIFF and GeoTIFF, cubes of ISIS, images of the PDS and others.
+// Reads photos and rasters by GDAL: PNG, JPEG, WebP, TIFF and GeoTIFF, cubes of ISIS, images of the PDS and
+// others.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "estimation/gabor/image/height_map.h"
-#include "estimation/gabor/image/photo_codec_internal.h"
 #include "numerics/progress.h"
 
 class GDALDataset;
 class GDALRasterBand;
 
 namespace astrolith {
+
+// Takes a row of pixels of 1 channel, or of 3: red, green and blue.
+using TakeRow = std::function<void(std::span<const double> row, int channels)>;
 
 class RasterFile {
  public:
@@ -55,6 +60,7 @@ class RasterFile {
   std::unique_ptr<GDALDataset> dataset_;
   std::unique_ptr<Bands> bands_;
   int orientation_ = 1;
+  bool animated_ = false;
   std::optional<StatedScale> scale_;
 };
 

@@ -110,7 +110,7 @@ TEST(GaborFit, SurvivesDegenerateTextures) {
 TEST(GaborFit, Gravel) {
   const auto file = testing::package_file("gravel.png");
   ASTROLITH_SKIP_WITHOUT(file);
-  const GreyImage photo = read_grey_image(file).image;
+  const GreyImage photo = read_image(file, false).planes[0];
   GreyImage corner{256, 256, {}};
   for (int y = 0; y < 256; ++y) {
     for (int x = 0; x < 256; ++x) corner.values.push_back(photo.at(x, y));

@@ -143,7 +143,7 @@ TEST(Gaussianity, FlagsBricksAndPaving) {
   for (const char* name : {"STRUCT_brick_skimage_512.png", "STRUCT_paving_height_ambientcg_2048.png"}) {
     const auto file = testing::shared_texture(name);
     ASTROLITH_SKIP_WITHOUT(file);
-    const Gaussianity g = test_gaussianity(read_grey_image(file).image, 1);
+    const Gaussianity g = test_gaussianity(read_image(file, false).planes[0], 1);
     EXPECT_EQ(g.likeness, Likeness::kOutside) << name << ": " << g.sentence;
     EXPECT_EQ(g.p_value, 0.01);
   }

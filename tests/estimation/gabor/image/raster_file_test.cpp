@@ -25,10 +25,10 @@ class RasterFileTest : public ::testing::Test {
  protected:
   ImageFile read(const RasterInput& input, std::vector<double> values,
                  const std::function<void(GDALDataset&)>& describe = {}) {
-    return read_grey_image(write_raster(folder / "raster", input, std::move(values), describe));
+    return read_image(write_raster(folder / "raster", input, std::move(values), describe), false);
   }
   std::string error_of(const fs::path& file) {
-    return testing::refusal_of([&] { read_grey_image(file); });
+    return testing::refusal_of([&] { read_image(file, false); });
   }
   static void expect_values(const GreyImage& image, const std::vector<double>& expected) {
     ASSERT_EQ(image.values.size(), expected.size());
@@ -44,7 +44,7 @@ TEST_F(RasterFileTest, EveryDepthHasItsFullScale) {
   const auto shares = [&](GDALDataType type, const char* bits, double full) {
     RasterInput input{"GTiff", type};
     if (bits != nullptr) input.options = {bits};
-    expect_values(read(input, {0.0, full, 1.0, 2.0, 3.0, 4.0}).image,
+    expect_values(read(input, {0.0, full, 1.0, 2.0, 3.0, 4.0}).planes[0],
                   {0.0, 1.0, 1.0 / full, 2.0 / full, 3.0 / full, 4.0 / full});
   };
   shares(GDT_Byte, nullptr, 255.0);
@@ -57,14 +57,14 @@ TEST_F(RasterFileTest, EveryDepthHasItsFullScale) {
 TEST_F(RasterFileTest, FloatsAndSignedIntegersStayAsTheyAre) {
   const std::vector<double> values{-2.0, 0.5, 0.0, 3.0, 65504.0, 1.0};
   for (const GDALDataType type : {GDT_Float32, GDT_Float64})
-    expect_values(read({"GTiff", type}, values).image, values);
-  expect_values(read({"GTiff", GDT_Float32, 3, 2, 1, {"NBITS=16"}}, values).image, values);
+    expect_values(read({"GTiff", type}, values).planes[0], values);
+  expect_values(read({"GTiff", GDT_Float32, 3, 2, 1, {"NBITS=16"}}, values).planes[0], values);
   const std::vector<double> whole{-128.0, 0.0, 127.0, 3.0, -1.0, 1.0};
   for (const GDALDataType type : {GDT_Int16, GDT_Int32, GDT_Int64})
-    expect_values(read({"GTiff", type}, whole).image, whole);
+    expect_values(read({"GTiff", type}, whole).planes[0], whole);
   expect_values(
       read({"GTiff", GDT_Byte, 3, 2, 1, {"PIXELTYPE=SIGNEDBYTE"}}, {128.0, 0.0, 127.0, 3.0, 255.0, 1.0})
-          .image,
+          .planes[0],
       whole);
 }
 
@@ -73,7 +73,7 @@ TEST_F(RasterFileTest, PlanesTilesAndCompressionMakeNoDifference) {
                                    0,     0, 65535, 0, 65535, 0, 65535, 0, 0};
   const auto planes = [&](std::vector<const char*> options) {
     write_raster(folder / "c.tif", {"GTiff", GDT_UInt16, 3, 2, 3, std::move(options)}, colors);
-    return read_color_image(folder / "c.tif").planes;
+    return read_image(folder / "c.tif", true).planes;
   };
   const auto together = planes({"PHOTOMETRIC=RGB"});
   EXPECT_EQ(together[0].values, (std::vector<double>{1, 0, 0, 0, 1, 0}));
@@ -85,10 +85,11 @@ TEST_F(RasterFileTest, PlanesTilesAndCompressionMakeNoDifference) {
 
 TEST_F(RasterFileTest, WhiteMayBeZero) {
   expect_values(
-      read({"GTiff", GDT_UInt16, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {65535, 0, 13107, 0, 0, 0}).image,
+      read({"GTiff", GDT_UInt16, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {65535, 0, 13107, 0, 0, 0}).planes[0],
       {0.0, 1.0, 0.8, 1.0, 1.0, 1.0});
-  expect_values(read({"GTiff", GDT_Byte, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {255, 0, 51, 0, 0, 0}).image,
-                {0.0, 1.0, 0.8, 1.0, 1.0, 1.0});
+  expect_values(
+      read({"GTiff", GDT_Byte, 3, 2, 1, {"PHOTOMETRIC=MINISWHITE"}}, {255, 0, 51, 0, 0, 0}).planes[0],
+      {0.0, 1.0, 0.8, 1.0, 1.0, 1.0});
 }
 
 TEST_F(RasterFileTest, PalettesAreExpanded) {
@@ -99,7 +100,7 @@ TEST_F(RasterFileTest, PalettesAreExpanded) {
     table.SetColorEntry(1, &blue);
     raster.GetRasterBand(1)->SetColorTable(&table);
   });
-  const ColorImageFile color = read_color_image(folder / "p.tif");
+  const ImageFile color = read_image(folder / "p.tif", true);
   EXPECT_DOUBLE_EQ(color.planes[0].values[0], 1.0);
   EXPECT_DOUBLE_EQ(color.planes[2].values[0], 0.2);
   EXPECT_DOUBLE_EQ(color.planes[1].values[1], 0.4);
@@ -111,14 +112,14 @@ TEST_F(RasterFileTest, ColoursUnderAlphaAreThoseStored) {
   const auto with_alpha = [&](std::uint16_t kind) {
     write_tiff(folder / "a.tif", 4, 4, pixels,
                [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &kind); });
-    return read_color_image(folder / "a.tif");
+    return read_image(folder / "a.tif", true);
   };
-  const ColorImageFile apart = with_alpha(EXTRASAMPLE_UNASSALPHA);
+  const ImageFile apart = with_alpha(EXTRASAMPLE_UNASSALPHA);
   EXPECT_EQ(apart.planes[0].values, std::vector<double>(4, 0.2));
   ASSERT_EQ(apart.remarks.size(), 1u);
   EXPECT_TRUE(has(apart.remarks[0], "50.0 %"));
   // What was multiplied in is divided out, and nothing is left where alpha is 0.
-  const ColorImageFile associated = with_alpha(EXTRASAMPLE_ASSOCALPHA);
+  const ImageFile associated = with_alpha(EXTRASAMPLE_ASSOCALPHA);
   EXPECT_DOUBLE_EQ(associated.planes[0].values[0], 0.2);
   EXPECT_DOUBLE_EQ(associated.planes[0].values[1], 0.2 * 255.0 / 128.0);
   EXPECT_EQ(associated.planes[0].missing, (std::vector<bool>{false, false, true, false}));
@@ -137,10 +138,10 @@ TEST_F(RasterFileTest, AHeightMapStatesItsPixelsHeightsAndGaps) {
   EXPECT_TRUE(map.scale->heights);
   EXPECT_DOUBLE_EQ(map.scale->pixel_width, 2.5);
   EXPECT_EQ(map.scale->pixel_source, "");
-  EXPECT_EQ(map.image.missing, (std::vector<bool>{true, false, false, false, false, false}));
-  EXPECT_NEAR(map.image.values[3] - map.image.values[1], 1e4, 1e-9);
-  EXPECT_NEAR(known_mean(map.image), 0.0, 1e-9);
-  EXPECT_TRUE(std::isfinite(map.image.values[0]));
+  EXPECT_EQ(map.planes[0].missing, (std::vector<bool>{true, false, false, false, false, false}));
+  EXPECT_NEAR(map.planes[0].values[3] - map.planes[0].values[1], 1e4, 1e-9);
+  EXPECT_NEAR(known_mean(map.planes[0]), 0.0, 1e-9);
+  EXPECT_TRUE(std::isfinite(map.planes[0].values[0]));
 }
 
 TEST_F(RasterFileTest, DegreesBecomeMetresByTheBodysRadius) {
@@ -178,7 +179,7 @@ TEST_F(RasterFileTest, AFootIsNoMetre) {
     raster.GetRasterBand(1)->SetUnitType("ft");
   });
   EXPECT_NEAR(map.scale->pixel_width, 3.048, 1e-9);
-  EXPECT_NEAR(map.image.values[5] - map.image.values[0], 1.524, 1e-9);
+  EXPECT_NEAR(map.planes[0].values[5] - map.planes[0].values[0], 1.524, 1e-9);
 }
 
 TEST_F(RasterFileTest, PicturesFromAboveHavePixelsAndNoHeights) {
@@ -187,7 +188,7 @@ TEST_F(RasterFileTest, PicturesFromAboveHavePixelsAndNoHeights) {
   ASSERT_TRUE(picture.scale.has_value());
   EXPECT_FALSE(picture.scale->heights);
   EXPECT_DOUBLE_EQ(picture.scale->pixel_width, 0.5);
-  EXPECT_DOUBLE_EQ(picture.image.values[5], 5.0 / 255.0);
+  EXPECT_DOUBLE_EQ(picture.planes[0].values[5], 5.0 / 255.0);
   EXPECT_FALSE(read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
                  place(raster, 0.5);
                  raster.GetRasterBand(1)->SetUnitType("I/F");
@@ -210,31 +211,32 @@ TEST_F(RasterFileTest, APixelScaleByItselfCounts) {
   float row[] = {-1850.0f, -1851.0f};
   TIFFWriteScanline(tiff, row, 0);
   TIFFClose(tiff);
-  const ImageFile map = read_grey_image(folder / "s.tif");
+  const ImageFile map = read_image(folder / "s.tif", false);
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_DOUBLE_EQ(map.scale->pixel_width, 3.0);
-  expect_values(map.image, {0.5, -0.5});
+  expect_values(map.planes[0], {0.5, -0.5});
 }
 
 TEST_F(RasterFileTest, TheHeightMapsOfSynthAreReadBack) {
   std::vector<float> heights{1.0f, 2.0f, 3.0f, std::numeric_limits<float>::quiet_NaN(), 5.0f, 6.0f};
   write_geotiff(heights, 3, 2, 0.25, "heights", folder / "g.tif");
-  const ImageFile map = read_grey_image(folder / "g.tif");
+  const ImageFile map = read_image(folder / "g.tif", false);
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
   EXPECT_DOUBLE_EQ(map.scale->pixel_width, 0.25);
   EXPECT_EQ(map.scale->pixel_source, "");
-  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
 }
 
 TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
   const ImageFile map = read({"GTiff", GDT_Float32}, {-9999, 10, 11, 12, 11, 10});
-  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
   ASSERT_EQ(map.remarks.size(), 1u);
   EXPECT_TRUE(has(map.remarks[0], "-9999"));
   // A radius in metres is a height like another.
-  EXPECT_EQ(missing_share(read({"GTiff", GDT_Float64}, {1.7e6, 1.7e6, 1.7e6 + 1, 1.7e6, 1.7e6, 1.7e6}).image),
-            0.0);
+  EXPECT_EQ(
+      missing_share(read({"GTiff", GDT_Float64}, {1.7e6, 1.7e6, 1.7e6 + 1, 1.7e6, 1.7e6, 1.7e6}).planes[0]),
+      0.0);
   write_raster(folder / "far.tif", {"GTiff", GDT_Float64}, {1e12, 1, 2, 3, 4, 5});
   EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata"));
 }
@@ -245,7 +247,7 @@ TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
     const fs::path file = folder / (std::string(format) + (std::string(format) == "PDS4" ? ".xml" : ".img"));
     write_raster(file, {format, GDT_Float32, 4, 3}, heights);
     ASSERT_TRUE(fs::exists(file)) << format;
-    const GreyImage image = read_grey_image(file).image;
+    const GreyImage image = read_image(file, false).planes[0];
     ASSERT_EQ(image.values.size(), 12u) << format;
     EXPECT_NEAR(image.values[5] - image.values[0], 5.0, 1e-6) << format;
     EXPECT_FALSE(fs::exists(file.string() + ".aux.xml") && std::string(format) != "FITS") << format;
@@ -269,13 +271,13 @@ std::string pds3(int bits, const std::string& lines, const std::string& image = 
 // GDAL keeps the unit of a PDS3 label to itself.
 TEST_F(RasterFileTest, ThePds3LabelHasTheUnit) {
   const auto map_of = [&](const std::string& lines) {
-    return read_grey_image(folder.write("dem.img", pds3(16, lines)));
+    return read_image(folder.write("dem.img", pds3(16, lines)), false);
   };
   const ImageFile map = map_of(" UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n");
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
-  EXPECT_NEAR(map.image.values[5] - map.image.values[0], 2500.0, 1e-9);
-  EXPECT_NEAR(map_of(" UNIT = METER\r\n").image.values[5], 5.0, 1e-9);
+  EXPECT_NEAR(map.planes[0].values[5] - map.planes[0].values[0], 2500.0, 1e-9);
+  EXPECT_NEAR(map_of(" UNIT = METER\r\n").planes[0].values[5], 5.0, 1e-9);
   EXPECT_FALSE(map_of(" UNIT = \"KM/S\"\r\n").scale.has_value());
 }
 
@@ -283,12 +285,12 @@ TEST_F(RasterFileTest, BlanksBehindALabelTakeNoStack) {
   std::string file = pds3(16, "");
   file.replace(file.size() - 400, 1, 70000, ' ');
   file[file.size() - 500] = '\n';
-  EXPECT_EQ(read_grey_image(folder.write("dem.img", file)).image.values.size(), 6u);
+  EXPECT_EQ(read_image(folder.write("dem.img", file), false).planes[0].values.size(), 6u);
 }
 
 TEST_F(RasterFileTest, BlackIsMissingWhereThePds3LabelSaysSo) {
   const auto missing = [&](const std::string& lines) {
-    return missing_share(read_grey_image(folder.write("p.img", pds3(8, lines))).image);
+    return missing_share(read_image(folder.write("p.img", pds3(8, lines)), false).planes[0]);
   };
   EXPECT_EQ(missing(""), 0.0);
   EXPECT_NEAR(missing(" MISSING_CONSTANT = 0\r\n"), 1.0 / 6.0, 1e-12);
@@ -333,22 +335,23 @@ std::string fits(const std::vector<int>& stored, const std::vector<std::string>&
 
 TEST_F(RasterFileTest, FitsHasItsUnitAndItsBlanks) {
   const auto map_of = [&](const std::vector<int>& stored, const std::vector<std::string>& cards) {
-    return read_grey_image(folder.write("m.fits", fits(stored, cards)));
+    return read_image(folder.write("m.fits", fits(stored, cards)), false);
   };
   const ImageFile map =
       map_of({-32768, 1, 2, 3, 4, 5}, {"BLANK   =               -32768", "BUNIT   = 'km      '"});
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
-  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
-  EXPECT_DOUBLE_EQ(*std::max_element(map.image.values.begin(), map.image.values.end()), 5000.0);
+  EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
+  EXPECT_DOUBLE_EQ(*std::max_element(map.planes[0].values.begin(), map.planes[0].values.end()), 5000.0);
   // Unsigned numbers are stored from -32768.
   const std::string zero = "BZERO   =              32768.0";
   const ImageFile words = map_of({32767, -32768, 0, 0, 0, 0}, {zero});
-  const auto [black, white] = std::minmax_element(words.image.values.begin(), words.image.values.end());
+  const auto [black, white] =
+      std::minmax_element(words.planes[0].values.begin(), words.planes[0].values.end());
   EXPECT_DOUBLE_EQ(*black, 0.0);
   EXPECT_DOUBLE_EQ(*white, 1.0);
   const ImageFile gap = map_of({-32768, 1, 2, 3, 4, 5}, {zero, "BLANK   =               -32768"});
-  EXPECT_NEAR(missing_share(gap.image), 1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(missing_share(gap.planes[0]), 1.0 / 6.0, 1e-12);
   // GDAL would cut off fractions.
   folder.write("half.fits", fits({0, 1, 2, 3, 4, 5}, {"BSCALE  =                  0.5"}));
   EXPECT_TRUE(has(error_of(folder / "half.fits"), "scaled integers"));
@@ -360,8 +363,8 @@ TEST_F(RasterFileTest, MarksCountAsStored) {
     raster.GetRasterBand(1)->SetOffset(1000.0);
     raster.GetRasterBand(1)->SetUnitType("metres above the ellipsoid");
   });
-  const ImageFile map = read_grey_image(folder / "s.tif");
-  EXPECT_NEAR(missing_share(map.image), 1.0 / 6.0, 1e-12);
+  const ImageFile map = read_image(folder / "s.tif", false);
+  EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
   ASSERT_EQ(map.remarks.size(), 1u);
   EXPECT_TRUE(has(map.remarks[0], "-9999 lies"));
   EXPECT_TRUE(map.scale->heights);
@@ -391,14 +394,14 @@ TEST_F(RasterFileTest, APixelWithoutOneColourIsMissing) {
   std::vector<double> values(18, 0.5);
   values[7] = std::numeric_limits<double>::quiet_NaN();
   write_raster(folder / "c.tif", {"GTiff", GDT_Float32, 3, 2, 3, {"PHOTOMETRIC=RGB"}}, values);
-  for (const GreyImage& plane : read_color_image(folder / "c.tif").planes)
+  for (const GreyImage& plane : read_image(folder / "c.tif", true).planes)
     EXPECT_EQ(plane.missing, (std::vector<bool>{false, true, false, false, false, false}));
 }
 
 TEST_F(RasterFileTest, HeightsUnderPremultipliedAlphaAreNotDivided) {
   std::vector<double> values{-3, 20, 30, 40, 50, 60, 1, 1, 0.5, 1, 1, 1};
   write_raster(folder / "h.tif", {"GTiff", GDT_Float32, 3, 2, 2, {"ALPHA=PREMULTIPLIED"}}, values);
-  expect_values(read_grey_image(folder / "h.tif").image, {-3, 20, 30, 40, 50, 60});
+  expect_values(read_image(folder / "h.tif", false).planes[0], {-3, 20, 30, 40, 50, 60});
 }
 
 TEST_F(RasterFileTest, OneHugeTileIsRefused) {
@@ -439,7 +442,7 @@ TEST_F(RasterFileTest, JpegOf2000IsRead) {
   for (int i = 0; i < 64 * 64; ++i) values.push_back(i % 251 * 16);
   const fs::path file = write_raster(
       folder / "j.jp2", {"JP2OpenJPEG", GDT_UInt16, 64, 64, 1, {"QUALITY=100", "REVERSIBLE=YES"}}, values);
-  const GreyImage image = read_grey_image(file).image;
+  const GreyImage image = read_image(file, false).planes[0];
   EXPECT_DOUBLE_EQ(image.values[77], 77 * 16 / 65535.0);
 }
 
@@ -486,7 +489,7 @@ TEST_F(RasterFileTest, PagesAreSaid) {
     TIFFWriteDirectory(tiff);
   }
   TIFFClose(tiff);
-  const ImageFile file = read_grey_image(folder / "pages.tif");
+  const ImageFile file = read_image(folder / "pages.tif", false);
   ASSERT_EQ(file.remarks.size(), 1u);
   EXPECT_TRUE(has(file.remarks[0], "first of several pages"));
 }
@@ -499,7 +502,7 @@ TEST_F(RasterFileTest, EveryOrientationIsHonoured) {
   for (int orientation = 1; orientation <= 8; ++orientation) {
     write_tiff(folder / "o.tif", 3, 1, {10, 20, 30, 40, 50, 60},
                [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation); });
-    const GreyImage image = read_grey_image(folder / "o.tif").image;
+    const GreyImage image = read_image(folder / "o.tif", false).planes[0];
     EXPECT_EQ(image.width, orientation > 4 ? 2 : 3);
     for (std::size_t i = 0; i < 6; ++i)
       EXPECT_NEAR(image.values[i] * 255.0, upright[static_cast<std::size_t>(orientation - 1)][i], 1e-9)
