@@ -28,10 +28,14 @@ def make_truth(programs, model, recipe):
     recipe.write_text(json.dumps(document))
 
 
-def made_of(programs, fit, *options):
-    """Seconds and gigabytes of a mesh of a fit, as measured and as another body of the kind."""
-    mesh = [programs / "synth", fit, "-o", fit.with_suffix(".ply"), "--quiet", *options]
-    return ["{:.1f}, {:.2f}".format(run.seconds, run.bytes / 1e9) for run in (Run(*mesh), Run(*mesh, "--like"))]
+def made_of(programs, fit, size, *likeness):
+    """Seconds and gigabytes of a mesh of a fit, and of a patch around one of its vertices."""
+    mesh, patch = fit.with_suffix(".obj"), fit.with_suffix(".ply")
+    whole = Run(programs / "synth", fit, "-o", mesh, "--quiet", "--triangles", 20000, *likeness)
+    with mesh.open() as lines:
+        vertex = next(line for line in lines if line.startswith("v ")).split()[1:4]
+    cut = Run(programs / "synth", fit, "-o", patch, "--quiet", "--patch", *vertex, size, "--resolution", 200, *likeness)
+    return [f"{run.seconds:.1f}, {run.bytes / 1e9:.2f}" for run in (whole, cut)]
 
 
 def fitted(programs, body, folder):
@@ -40,10 +44,6 @@ def fitted(programs, body, folder):
     run = Run(programs / "fit_shape", body, "-o", fit, "--noise-seeds", 0, "--quiet", "--summary", summary)
     figures = json.loads(summary.read_text())
     heights = figures["relief"]["heights"]
-    recipe = folder / "whole.json"
-    Run(programs / "synth", fit, "--write-recipe", recipe, "--quiet")
-    x, y, z, radius = max(json.loads(recipe.read_text())["body"]["spheres"], key=lambda sphere: sphere[3])
-    patch = ["--patch", x, y, z + radius, 0.02 * radius, "--resolution", 200]
     return run.seconds, [
         f"{run.seconds:.0f}",
         f"{run.bytes / 1e9:.2f}",
@@ -51,8 +51,8 @@ def fitted(programs, body, folder):
         f"{figures['similarity']:.3f} / {figures['similarity_floor']:.3f}",
         heights,
         f"{fit.stat().st_size / heights:.3f}",
-        *made_of(programs, fit, "--triangles", 20000),
-        *made_of(programs, fit, *patch),
+        *made_of(programs, fit, 0.01 * figures["diagonal"]),
+        *made_of(programs, fit, 0.01 * figures["diagonal"], "--like"),
     ]
 
 
@@ -67,7 +67,7 @@ def main():
         if not recipe.exists():
             make_truth(programs, arguments.model, recipe)
         head("facets", "fit, s", "GB", "over the base", "similarity / floor", "heights", "bytes each",
-             "mesh, s, GB", "like", "patch", "like")  # fmt: skip
+             "mesh, s, GB", "patch", "like", "its patch")  # fmt: skip
         took = []
         for facets in sorted(arguments.facets):
             body = folder / f"truth_{facets}.obj"
