@@ -51,30 +51,50 @@ void require_known(const GreyImage& plane, const std::string& name) {
                                name, 100.0 * share));
 }
 
-// Usual marks for no data that a file may store without naming them. One is taken for missing if it is the
-// lowest value by more than all other values differ.
-std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
-  double lowest = std::numeric_limits<double>::infinity(), next = lowest, highest = -lowest;
+// The two least and the two largest values that differ.
+struct Extremes {
+  double lowest = std::numeric_limits<double>::infinity(), above = lowest, below = -lowest, highest = -lowest;
+};
+
+Extremes extremes_of(const GreyImage& plane) {
+  Extremes e;
   for (const double v : plane.values) {
-    if (std::isnan(v)) continue;
-    highest = std::max(highest, v);
-    if (v < lowest)
-      next = std::exchange(lowest, v);
-    else if (v > lowest)
-      next = std::min(next, v);
+    if (v < e.lowest)
+      e.above = std::exchange(e.lowest, v);
+    else if (v > e.lowest)
+      e.above = std::min(e.above, v);
+    if (v > e.highest)
+      e.below = std::exchange(e.highest, v);
+    else if (v < e.highest)
+      e.below = std::max(e.below, v);
   }
-  constexpr double kMarks[] = {-999.0, -9999.0, -32767.0, -32768.0, -99999.0};
+  return e;
+}
+
+// Usual marks for no data that a file may store without naming them. One is taken for missing if it is the
+// lowest or, of heights, the largest value by more than all other values differ.
+std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
+  const auto [lowest, above, below, highest] = extremes_of(plane);
+  constexpr double kMarks[] = {0.0, 999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0};
   constexpr double kRounded = 1e-6;  // of floats
-  const auto* const mark = std::find_if(std::begin(kMarks), std::end(kMarks), [&](double stored) {
-    return std::abs(raster.value_of(stored) - lowest) <= kRounded * std::abs(lowest);
-  });
-  if (mark == std::end(kMarks)) return {};
-  if (!(next - lowest > highest - next) || next == highest) return {};
-  for (double& v : plane.values) {
-    if (v == lowest) v = std::numeric_limits<double>::quiet_NaN();
-  }
-  return fmt::format(
-      "{:g} lies far below all other values and is taken for no data, though the file names none", *mark);
+  const bool heights = raster.scale() && raster.scale()->heights;
+  const auto unmarked = [&](double value, double gap, double others,
+                            const char* where) -> std::optional<std::string> {
+    if (!(gap > others) || !(others > 0.0)) return {};
+    for (const double mark : kMarks) {
+      const double stored = std::copysign(mark, raster.stored_of(value));
+      if (std::abs(raster.value_of(stored) - value) > kRounded * std::abs(value)) continue;
+      // Black and saturated pixels have brightness.
+      if (!heights && !(stored < 0.0)) continue;
+      std::replace(plane.values.begin(), plane.values.end(), value, std::numeric_limits<double>::quiet_NaN());
+      return fmt::format(
+          "{:g} lies far {} all other values and is taken for no data, though the file names none", stored,
+          where);
+    }
+    return {};
+  };
+  std::optional<std::string> said = unmarked(lowest, above - lowest, highest - above, "below");
+  return said ? said : unmarked(highest, highest - below, below - lowest, "above");
 }
 
 // A pixel without one of its colours has none of them.

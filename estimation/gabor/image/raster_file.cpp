@@ -37,7 +37,7 @@ constexpr std::array kFormats{
     Format{"FITS", GDALRegister_FITS},       Format{"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
     Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA},
     Format{"PNG", GDALRegister_PNG},         Format{"JPEG", GDALRegister_JPEG},
-    Format{"WEBP", GDALRegister_WEBP}};
+    Format{"WEBP", GDALRegister_WEBP},       Format{"SRTMHGT", GDALRegister_SRTMHGT}};
 
 // While an object of this class lives, this thread's GDAL prints nothing, starts no thread that would, writes
 // nothing beside its input and asks no network.
@@ -100,13 +100,20 @@ void require_own_folder(GDALDataset& dataset, const std::string& name) {
   }
 }
 
-// The label beside a file of pixels without one; empty where none is.
-std::string label_beside(const std::filesystem::path& file) {
-  for (const char* extension : {".lbl", ".LBL", ".xml", ".XML"}) {
-    const std::filesystem::path label = std::filesystem::path(file).replace_extension(extension);
-    if (label != file && std::filesystem::is_regular_file(label)) return label.string();
+// The file of the same name and another ending that holds a raster: the label of pixels, or the pixels of a
+// header. Empty where none is.
+std::string raster_beside(const std::filesystem::path& file) {
+  std::vector<std::string> others;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path() / ".", error)) {
+    if (entry.path().stem() == file.stem() && entry.path().filename() != file.filename() &&
+        entry.is_regular_file(error))
+      others.push_back((file.parent_path() / entry.path().filename()).string());
   }
-  return "";
+  std::sort(others.begin(), others.end());
+  const auto found = std::find_if(others.begin(), others.end(),
+                                  [](const std::string& other) { return open_raster(other) != nullptr; });
+  return found == others.end() ? "" : *found;
 }
 
 }  // namespace
@@ -194,8 +201,8 @@ RasterFile::RasterFile(const std::filesystem::path& file)
   const QuietGdal quiet;
   dataset_ = open_raster(name_);
   if (dataset_ == nullptr) {
-    const std::string label = label_beside(name_);
-    if (!label.empty()) fail("its first bytes are not those of a picture or height map; give " + label);
+    const std::string other = raster_beside(file);
+    if (!other.empty()) fail("its first bytes are not those of a picture or height map; give " + other);
     fail(
         "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
         "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");

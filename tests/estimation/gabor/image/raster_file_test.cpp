@@ -233,6 +233,15 @@ TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
   EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
   ASSERT_EQ(map.remarks.size(), 1u);
   EXPECT_TRUE(has(map.remarks[0], "-9999"));
+  const auto share = [&](double mark, const std::function<void(GDALDataset&)>& describe) {
+    return missing_share(read({"GTiff", GDT_UInt16}, {mark, 310, 311, 312, 311, mark}, describe).image);
+  };
+  const auto placed = [](GDALDataset& raster) { place(raster, 2.0); };
+  for (const double mark : {0.0, 9999.0, 32767.0, 65535.0}) {
+    EXPECT_NEAR(share(mark, placed), 1.0 / 3.0, 1e-12) << mark;
+    EXPECT_EQ(share(mark, {}), 0.0) << mark;  // brightness
+  }
+  EXPECT_EQ(share(5000.0, placed), 0.0);
   // A radius in metres is a height like another.
   EXPECT_EQ(
       missing_share(read({"GTiff", GDT_Float64}, {1.7e6, 1.7e6, 1.7e6 + 1, 1.7e6, 1.7e6, 1.7e6}).planes[0]),
