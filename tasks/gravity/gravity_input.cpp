@@ -4,6 +4,7 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/weld.h"
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
@@ -17,10 +18,12 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file,
   if (!is_recipe_name(file)) {
     const MeshUnit length_unit = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
-    // Edges of four facets, two each way, are no trouble for gravity.
+    // Edges of four facets, two each way, are no trouble for gravity, but for those of facets that are there
+    // twice.
     const MeshTopology topology = analyze_topology(mesh);
     const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0 &&
-                         !repair.unite && !repair.wrap;
+                         !repair.unite && !repair.wrap &&
+                         drop_degenerate_and_repeated_faces(mesh).triangles.size() == mesh.triangles.size();
     if (touches) {
       WoundSurface wound = wound_surface(std::move(mesh));
       if (wound.changed()) job.say(file.string() + ": " + wound.words());

@@ -304,6 +304,21 @@ TEST_F(Gravity, DamagedMeshesAreRepaired) {
   };
   const double whole = mass("whole.obj", "");
   EXPECT_NEAR(mass("holed.obj", "holed.obj: filled 1 hole (largest"), whole, 1e-9 * whole);
+  // Facets that are there twice, in the same sense or in both.
+  const std::string faces = ball.substr(ball.find("f "));
+  write("doubled.obj", ball + faces);
+  EXPECT_NEAR(mass("doubled.obj", "dropped"), whole, 1e-9 * whole);
+  std::string turned;
+  std::istringstream lines(faces);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line.substr(2));
+    std::string first, others;
+    words >> first;
+    for (std::string corner; words >> corner;) others = " " + corner + others;
+    turned += "f " + first + others + "\n";  // quads have the same diagonals
+  }
+  write("two_sided.obj", ball + turned);
+  EXPECT_NEAR(mass("two_sided.obj", "dropped"), whole, 1e-9 * whole);
   refuse("holed.obj --density 2000 --strict", "holed.obj");
 }
 
