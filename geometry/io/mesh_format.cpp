@@ -261,6 +261,8 @@ TriangleMesh read_content(const MeshFile& file) {
   const bool is_named = named != std::end(kFormats);
   if (seen == std::end(kFormats)) {
     if (!is_named || other_file(file) != nullptr) fail_unknown(file);
+    if (named->reader == read_stl_binary && is_text(file.bytes))
+      file.fail("line 1", "text that does not begin with 'solid' is no STL", "correct the line or the name");
     return named->reader(file);
   }
   if (is_named && !may_end_in(*seen, extension)) {

@@ -73,19 +73,35 @@ std::string_view unquoted(std::string_view field) {
   return in_quotes ? trimmed(field.substr(1, field.size() - 2)) : field;
 }
 
+constexpr std::string_view kSeparators = ",;\t";
+
+// The line with letters for all that stands in quotes, which open at the start of a field.
+std::string without_quoted(std::string_view line) {
+  std::string text(line);
+  bool quoted = false, at_start = true;
+  for (char& c : text) {
+    const bool mark = c == '"' && (quoted || at_start);
+    if (mark) quoted = !quoted;
+    at_start = !quoted && (kSeparators.find(c) != kSeparators.npos || (at_start && c == ' '));
+    if (quoted) c = 'q';
+  }
+  return text;
+}
+
 // The fields of a line, without those that are empty at its end.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
-  constexpr std::string_view kSeparators = ",;\t";
+  const std::string quoted = line.find('"') == line.npos ? "" : without_quoted(line);
+  const std::string_view seen = quoted.empty() ? line : std::string_view(quoted);
   const auto* const separator =
-      std::find_if(kSeparators.begin(), kSeparators.end(), [&](char c) { return line.find(c) != line.npos; });
+      std::find_if(kSeparators.begin(), kSeparators.end(), [&](char c) { return seen.find(c) != seen.npos; });
   const bool by_blanks = separator == kSeparators.end();
-  while (!line.empty()) {
+  for (std::size_t start = 0; start < line.size();) {
     const std::size_t end =
-        std::min(by_blanks ? line.find_first_of(kBlanks) : line.find(*separator), line.size());
-    const std::string_view field = unquoted(line.substr(0, end));
+        std::min(by_blanks ? seen.find_first_of(kBlanks, start) : seen.find(*separator, start), line.size());
+    const std::string_view field = unquoted(line.substr(start, end - start));
     if (!by_blanks || !field.empty()) fields.push_back(field);
-    line.remove_prefix(std::min(end + 1, line.size()));
+    start = end + 1;
   }
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
 }

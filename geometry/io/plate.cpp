@@ -85,7 +85,16 @@ TriangleMesh read_plate(const MeshFile& file) {
   TriangleMesh mesh;
   TextScanner scan(file);
   if (!scan.next_filled_line()) scan.fail_truncated("the number of vertices");
-  const std::size_t num_vertices = checked_count(scan, scan.integer("number of vertices"), "vertices");
+  const std::string_view first = scan.word();
+  if (first.find_first_not_of("0123456789") != first.npos) {
+    // Tables of other kinds come here by their names alone.
+    scan.fail("begins with " + astrolith::quoted(first) +
+                  ", and is neither a plate model, which begins with a count of vertices, nor a regular grid "
+                  "of latitude, longitude and radius from pole to pole",
+              "name its columns, such as lat,lon,radius_km, fill its gaps, or give a mesh");
+  }
+  const std::size_t num_vertices =
+      checked_count(scan, scan.to_integer(first, "number of vertices"), "vertices");
   std::int64_t num_plates = scan.line_done() ? 0 : scan.integer("number of plates");
   mesh.vertices.reserve(num_vertices);
   bool numbered = true;

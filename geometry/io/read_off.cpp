@@ -11,14 +11,16 @@ namespace {
 std::string_view first_count(TextScanner& scan) {
   if (!scan.next_filled_line()) scan.fail_truncated("'OFF'");
   std::string_view word = scan.word();
-  const std::size_t keyword = word.find("OFF");
+  const std::size_t keyword = lower_case(word).find("off");
   if (keyword == word.npos) return word;  // the keyword is optional
   word.remove_prefix(keyword + 3);
   if (!word.empty()) return word;
   while (scan.line_done() || scan.at_comment()) {
     if (!scan.next_filled_line()) scan.fail_truncated("the counts");
   }
-  return scan.word();
+  word = scan.word();
+  if (lower_case(word) == "binary") scan.fail("is a binary OFF", "save it as text, or as .ply");
+  return word;
 }
 
 std::size_t checked_count(const TextScanner& scan, std::int64_t count, std::size_t line_bytes,

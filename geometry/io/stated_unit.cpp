@@ -3,6 +3,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/named_table_internal.h"
 #include "geometry/io/pds_label_internal.h"
@@ -94,6 +95,11 @@ std::string unit_of_line(std::string_view line) {
 StatedUnit stated_unit(const std::filesystem::path& file) {
   const std::string start = start_of(file);
   if (begins_pds3_label(start)) return {unit_in_label(start), {}};
+  if (mesh_extension(file) == ".stl") {
+    constexpr std::size_t kStlHeader = 80;
+    if (std::string unit = unit_in_words(start.substr(0, kStlHeader)); !unit.empty())
+      return {std::move(unit), {}};
+  }
   for (std::string_view rest = std::string_view(start).substr(0, kMostHeader); !rest.empty();) {
     const std::size_t end = std::min(rest.find_first_of("\n\r"), rest.size());
     if (std::string unit = unit_of_line(rest.substr(0, end)); !unit.empty()) return {std::move(unit), {}};

@@ -174,7 +174,10 @@ std::string_view TextScanner::word_anywhere() {
 double TextScanner::to_number(std::string_view word, std::string_view what) const {
   if (word.empty()) fail(std::string(what) + " is missing", "complete the line");
   const std::optional<double> value = parse_number(word);
-  if (!value) fail(std::string(what) + " is " + quoted(word) + ", not a number", "correct the line");
+  if (!value) {
+    fail(std::string(what) + " is " + quoted(word) + ", not a number",
+         word.find(',') == word.npos ? "correct the line" : "write a decimal point");
+  }
   if (!std::isfinite(*value)) fail(std::string(what) + " is " + quoted(word), "give finite numbers");
   return *value;
 }

@@ -39,7 +39,7 @@ TEST_F(MeshErrors, NoFileNoMesh) {
   EXPECT_NE(complaint(folder.path()).find("folder"), std::string::npos);
   EXPECT_NE(complaint("/dev/zero").find("plain file"), std::string::npos);
   expect("a.obj", "", "empty");
-  expect("a.stl", "\n", "the file ends where the header");
+  expect("a.stl", "\n", "does not begin with 'solid'");
   expect("a.xyz", "hello world\n", "neither name nor content");
 }
 
@@ -108,8 +108,10 @@ TEST_F(MeshErrors, StlOffPlateIcqBmf) {
   expect("a.stl", "solid facet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
          "line 5: the facet has 2");
   expect("a.stl", "solid facet\nouter loop\nvertex 0 0 0\n", "'endsolid'");
-  expect("a.stl", std::string(100, 'x'), "declared, but only 16 bytes follow");
+  expect("a.stl", std::string(100, '\1'), "declared, but only 16 bytes follow");
+  expect("a.stl", "; made by hand\nsolid a\n" + std::string(100, 'x'), "does not begin with 'solid'");
   expect("a.off", "OFF\n3 1 0\n0 0 0\n", "more than the file can hold");
+  expect("a.off", "OFF BINARY\n\1\2", "is a binary OFF; save it as text");
   expect("a.off", "OFF\n1 1 0\n0 0 0\n", "line 4: the file ends");
   expect("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 7\n", "names vertex 8 of 1");
   expect("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "line 4: vertex index is missing");

@@ -185,6 +185,14 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
     EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
 }
 
+TEST(StatedUnit, InHeadersOfStl) {
+  const ScratchFolder folder;
+  const std::string tail(100, '\1');
+  EXPECT_EQ(stated_unit(folder.write("a.stl", "scanned part UNITS=mm" + tail)).unit, "mm");
+  EXPECT_EQ(stated_unit(folder.write("b.stl", "solid part units: m\nfacet\n")).unit, "m");
+  EXPECT_EQ(stated_unit(folder.write("c.stl", "scanned part" + tail + "UNITS=mm")).unit, "");
+}
+
 TEST(StatedUnit, InLabelsOfThePds) {
   const ScratchFolder folder;
   const std::string columns =

@@ -55,6 +55,8 @@ TEST_F(Tables, PointsByTheNamesOfTheirColumns) {
   expect_points("i pos_x pos_y pos_z\n1 3 0 0\n2 0 4 0\n");
   expect_points("x,y,z,potential_J_kg,acceleration_x_m_s2\n3,0,0,-1,2\n0,4,0,-1,2\n");
   expect_points("\"x\",\"y\",\"z\"\n\"3\",\"0\",\"0\"\n0,4,0\n");
+  expect_points("\"name\",\"x\",\"y\",\"z\"\n\"far, bright; old\",3,0,0\n\"12\"\" rock\",0,4,0\n");
+  expect_points("name;x;y;z\n \"a, b\";3;0;0\n12\" rock;0;4;0\n");
   expect_points("\"Points:0\",\"Points:1\",\"Points:2\",\"id\"\n3,0,0,1\n0,4,0,2\n");
   EXPECT_EQ(points("id,x_km,y_km,z_km\n1,3,0,0\n", "m").words,
             "columns 'x_km', 'y_km', 'z_km' are taken as x, y, z in km; left out: 'id'");
@@ -134,7 +136,10 @@ TEST_F(Tables, GridsThatAreNone) {
   };
   const std::string half = grid_table({.first = 0, .header = "lat lon radius\n"});
   EXPECT_NE(refusal(half).find("no regular grid from pole to pole"), std::string::npos) << refusal(half);
-  EXPECT_FALSE(refusal(grid_table({.first = 0})).empty());
+  for (const char* header : {"", "colatitude lon radius\n", "lat lon elevation\n"}) {
+    const std::string words = refusal(grid_table({.first = 0, .header = header}));
+    EXPECT_NE(words.find("name its columns"), std::string::npos) << words;
+  }
   std::string gap = grid_table({.header = "lat lon radius\n"});
   gap.erase(gap.size() / 2 / 32 * 32, 32);
   EXPECT_FALSE(refusal(gap).empty());
