@@ -11,6 +11,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "estimation/gabor/image/ground_steps_internal.h"
@@ -116,6 +117,14 @@ std::string raster_beside(const std::filesystem::path& file) {
   return found == others.end() ? "" : *found;
 }
 
+// Whether the file begins as the labels of PDS3, PDS4 and ISIS do.
+bool is_label(const std::filesystem::path& file) {
+  std::string start(16, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), 16);
+  return start.rfind("PDS_VERSION_ID", 0) == 0 || start.rfind("CCSD3ZF", 0) == 0 ||
+         start.rfind("<?xml", 0) == 0 || start.rfind("Object = IsisCub", 0) == 0;
+}
+
 }  // namespace
 
 // The bands of values, one or three, and how stored numbers become values.
@@ -126,7 +135,8 @@ struct RasterFile::Bands {
   const GDALColorTable* palette = nullptr;
   bool white_is_zero = false;
   bool signed_bytes = false;
-  bool isis_marks = false;            // 16-bit integers below -32752 are marks of ISIS
+  // Numbers of no pixel lie outside: ISIS and others have marks for no data, and for what a camera missed.
+  double least = -1e30, most = 1e30;
   double factor = 1.0, offset = 0.0;  // of the numbers that GDAL gives
   std::optional<double> blank;        // what GDAL gives for no data and masks not
   bool masked = true;                 // GDAL's mask counts
@@ -203,6 +213,8 @@ RasterFile::RasterFile(const std::filesystem::path& file)
   if (dataset_ == nullptr) {
     const std::string other = raster_beside(file);
     if (!other.empty()) fail("its first bytes are not those of a picture or height map; give " + other);
+    if (is_label(name_))
+      fail("is a label whose pixels are missing or damaged; put the file that it names beside it");
     fail(
         "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
         "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
@@ -248,7 +260,11 @@ void RasterFile::find_bands() {
   b.signed_bytes = structure(first, "PIXELTYPE") == "SIGNEDBYTE";
   const std::string driver = driver_of(*dataset_);
   b.see_through = driver == "PNG";
-  b.isis_marks = driver.rfind("ISIS", 0) == 0 && first.GetRasterDataType() == GDT_Int16;
+  if (driver == "PDS" || driver == "ISIS2") require_known_floats();
+  if (driver == "ISIS2" || driver == "ISIS3") {
+    if (first.GetRasterDataType() == GDT_Int16) b.least = -32752.0;
+    if (first.GetRasterDataType() == GDT_UInt16) std::tie(b.least, b.most) = std::pair(3.0, 65522.0);
+  }
   b.unit = first.GetUnitType();
   b.factor = first.GetScale();
   b.offset = first.GetOffset();
@@ -257,6 +273,15 @@ void RasterFile::find_bands() {
   b.as_stated =
       is_signed_or_float(first) || b.signed_bytes || b.factor != 1.0 || b.offset != 0.0 || !b.unit.empty();
   if (!b.as_stated) b.factor = 1.0 / full_scale(first);
+}
+
+// GDAL takes the floats of a VAX for others, which have their exponents elsewhere.
+void RasterFile::require_known_floats() const {
+  for (const char* keyword : {"SAMPLE_TYPE", "CORE_ITEM_TYPE"}) {
+    const std::string type = value_in_label(name_, keyword);
+    if (type.rfind("VAX", 0) == 0 && type.find("REAL") != type.npos)
+      fail("its pixels are floats of a VAX (" + type + "); save it as a GeoTIFF of 32-bit floats, by ISIS");
+  }
 }
 
 void RasterFile::read_label(GDALRasterBand& first) {
@@ -334,7 +359,6 @@ std::vector<std::string> RasterFile::remarks() const {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBeyondAll = 1e30;  // marks of ISIS and others for no data are larger
 
 }  // namespace
 
@@ -379,8 +403,7 @@ void RasterFile::read(const TakeRow& take, const Progress& progress) {
           continue;
         }
         if (b.signed_bytes && v > 127.0) v -= 256.0;
-        const bool mark =
-            !(std::abs(v) < kBeyondAll) || (b.isis_marks && v < -32752.0) || (b.blank && v == *b.blank);
+        const bool mark = !(v >= b.least && v <= b.most) || (b.blank && v == *b.blank);
         v = value_of(v);
         row[x * channels + k] = mark ? kMissing : b.white_is_zero && !b.as_stated ? 1.0 - v : v;
       }

@@ -51,6 +51,7 @@ class RasterFile {
  private:
   struct Bands;
   void find_bands();
+  void require_known_floats() const;
   void read_label(GDALRasterBand& first);
   void read_fits(GDALRasterBand& first);
   void find_scale();

@@ -263,6 +263,19 @@ TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
   }
 }
 
+TEST_F(RasterFileTest, MarksOfIsisAreMissing) {
+  const std::vector<double> heights{5, 6, 7, 8, 9, 10, 11, 12};
+  const auto share = [&](GDALDataType type, std::vector<double> marks) {
+    marks.insert(marks.end(), heights.begin(), heights.end());
+    const fs::path file = folder / "marks.cub";
+    write_raster(file, {"ISIS3", type, 4, 3}, marks, [](GDALDataset& raster) { place(raster, 2.0); });
+    return missing_share(read_grey_image(file).image);
+  };
+  EXPECT_NEAR(share(GDT_UInt16, {0, 1, 65534, 65535}), 1.0 / 3.0, 1e-12);
+  EXPECT_EQ(share(GDT_UInt16, {3, 4, 5, 6}), 0.0);
+  EXPECT_NEAR(share(GDT_Int16, {-32768, -32767, -32766, -32764}), 1.0 / 3.0, 1e-12);
+}
+
 // A PDS3 image of 3 x 2 pixels, 0 to 5, of big-endian integers of so many bits, with more lines of its label.
 std::string pds3(int bits, const std::string& lines, const std::string& image = "3") {
   std::string file =
@@ -303,6 +316,14 @@ TEST_F(RasterFileTest, BlackIsMissingWhereThePds3LabelSaysSo) {
   };
   EXPECT_EQ(missing(""), 0.0);
   EXPECT_NEAR(missing(" MISSING_CONSTANT = 0\r\n"), 1.0 / 6.0, 1e-12);
+}
+
+TEST_F(RasterFileTest, FloatsOfAVaxAndLabelsAloneAreRefused) {
+  std::string file = pds3(32, "");
+  file.replace(file.find("MSB_INTEGER"), 11, "VAX_REAL   ");
+  EXPECT_TRUE(has(error_of(folder.write("v.img", file)), "floats of a VAX (VAX_REAL)"));
+  EXPECT_TRUE(has(error_of(folder.write("p.lbl", pds3(8, "", "(\"gone.img\", 1)"))),
+                  "put the file that it names beside it"));
 }
 
 TEST_F(RasterFileTest, LabelsNameNoFilesOfOtherFolders) {
