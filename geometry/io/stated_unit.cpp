@@ -24,6 +24,8 @@ std::string start_of(const std::filesystem::path& file) {
   std::string bytes(kMostRead, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
   return is_zstd(bytes) ? unpack_zstd_start(bytes, kMostHeader) : bytes;
 }
 
