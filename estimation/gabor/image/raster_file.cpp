@@ -214,7 +214,9 @@ RasterFile::RasterFile(const std::filesystem::path& file)
     const std::string other = raster_beside(file);
     if (!other.empty()) fail("its first bytes are not those of a picture or height map; give " + other);
     if (is_label(name_))
-      fail("is a label whose pixels are missing or damaged; put the file that it names beside it");
+      fail(
+          "is a label whose pixels are missing, damaged or of a kind that is not read; put the file that it "
+          "names beside it");
     fail(
         "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
         "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
