@@ -234,7 +234,7 @@ TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
   ASSERT_EQ(map.remarks.size(), 1u);
   EXPECT_TRUE(has(map.remarks[0], "-9999"));
   const auto share = [&](double mark, const std::function<void(GDALDataset&)>& describe) {
-    return missing_share(read({"GTiff", GDT_UInt16}, {mark, 310, 311, 312, 311, mark}, describe).image);
+    return missing_share(read({"GTiff", GDT_UInt16}, {mark, 310, 311, 312, 311, mark}, describe).planes[0]);
   };
   const auto placed = [](GDALDataset& raster) { place(raster, 2.0); };
   for (const double mark : {0.0, 9999.0, 32767.0, 65535.0}) {
@@ -269,7 +269,7 @@ TEST_F(RasterFileTest, MarksOfIsisAreMissing) {
     marks.insert(marks.end(), heights.begin(), heights.end());
     const fs::path file = folder / "marks.cub";
     write_raster(file, {"ISIS3", type, 4, 3}, marks, [](GDALDataset& raster) { place(raster, 2.0); });
-    return missing_share(read_grey_image(file).image);
+    return missing_share(read_image(file, false).planes[0]);
   };
   EXPECT_NEAR(share(GDT_UInt16, {0, 1, 65534, 65535}), 1.0 / 3.0, 1e-12);
   EXPECT_EQ(share(GDT_UInt16, {3, 4, 5, 6}), 0.0);
