@@ -106,6 +106,12 @@ ASTROLITH_HD inline bool boxes_touch(const Box& a, const Box& b) {
          a.min.z <= b.max.z && a.max.z >= b.min.z;
 }
 
+// The smallest box that holds two boxes, neither of which is empty.
+ASTROLITH_HD inline Box box_of_both(const Box& a, const Box& b) {
+  return {{std::fmin(a.min.x, b.min.x), std::fmin(a.min.y, b.min.y), std::fmin(a.min.z, b.min.z)},
+          {std::fmax(a.max.x, b.max.x), std::fmax(a.max.y, b.max.y), std::fmax(a.max.z, b.max.z)}};
+}
+
 // The part that two boxes share. Expects that they touch.
 inline Box common_part(const Box& a, const Box& b) {
   return {{std::fmax(a.min.x, b.min.x), std::fmax(a.min.y, b.min.y), std::fmax(a.min.z, b.min.z)},

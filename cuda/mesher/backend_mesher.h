@@ -10,18 +10,19 @@
 #include "cuda/mesher/gathered_lists.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/field/patch_field.h"
 
 namespace astrolith {
 
 template <class Backend>
 class BackendMesher {
  public:
-  // Expects a field for which obstacle_on_gpu() is empty. The field must outlive the mesher.
-  BackendMesher(Backend& backend, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
+  // `field` are the tables of the grid's frame, for which obstacle_on_gpu() is empty.
+  BackendMesher(Backend& backend, const FieldView& field, const MeshGrid& grid, MeshSink& sink)
       : backend_(backend),
         grid_(grid),
-        field_(backend, field.tables()),
-        culler_(backend, field.tables(), field_.view(), grid, gabor_margin(field.tables())),
+        field_(backend, field),
+        culler_(backend, field, field_.view(), grid, gabor_margin(field)),
         cells_(backend.upload(std::span<const CellTriangles>(marching_cubes_table()))),
         sink_(sink) {
     statistics_.step = grid.samples.step;
@@ -157,14 +158,18 @@ class BackendMesher {
 template <class Backend>
 MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
-  const SampleGrid grid = make_sample_grid(bounds, resolution);
-  return BackendMesher<Backend>(backend, field, {grid, window_of_tile<kBlockCells>(grid, tile), true}, sink)
+  return BackendMesher<Backend>(backend, field.tables(), grid_of_field(bounds, resolution, tile), sink)
       .run(progress);
 }
 
-// The side of a block's box in the grid of mesh_field_on(), for obstacle_on_gpu(), length units.
-inline double block_side(const Box& bounds, int resolution) {
-  return (kBlockCells + 1) * make_sample_grid(bounds, resolution).step;
+// mesh_patch (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field that was made for a
+// patch with this centre, and for whose patch_tables() obstacle_on_gpu() is empty.
+template <class Backend>
+MeshStatistics mesh_patch_on(Backend& backend, const PatchField& field, double size, int resolution,
+                             MeshSink& sink, const Progress& progress) {
+  return BackendMesher<Backend>(backend, field.whole().patch_tables(),
+                                grid_of_patch(field.place(), size, resolution), sink)
+      .run(progress);
 }
 
 }  // namespace astrolith

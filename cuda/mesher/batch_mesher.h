@@ -75,11 +75,24 @@ class BatchMesher {
  private:
   void sample(Array<std::uint64_t>& counters) {
     backend_.launch("starting blocks", n_, StartBlocks{batch_, counters.data()});
-    const auto band = static_cast<float>(kSampleBand * batch_.grid.samples.step);
-    backend_.launch_groups("evaluating samples", n_, EvaluateSamples::kThreads,
-                           EvaluateSamples{batch_, band});
+    batch_.grid.in_patch ? evaluate<Frame::kPatch>() : evaluate<Frame::kBody>();
     backend_.launch("filling the halo of samples", n_ * HaloThread::kSamples, FillSampleHalo{batch_});
     backend_.launch("taking signs", n_ * TakeSigns::kRows, TakeSigns{batch_});
+  }
+
+  template <Frame frame>
+  void evaluate() {
+    const auto band = static_cast<float>(kSampleBand * batch_.grid.samples.step);
+    using Evaluate = EvaluateSamples<frame>;
+    backend_.launch_groups("evaluating samples", n_, Evaluate::kThreads, Evaluate{batch_, band});
+  }
+
+  template <Frame frame>
+  void take_normals(const Array<std::uint32_t>& vertex_rows, Array<MeshVertex>& vertices) {
+    const auto h = static_cast<float>(0.25 * batch_.grid.samples.step);
+    using Take = TakeNormals<frame>;
+    backend_.launch_groups("taking normals", n_, Take::kThreads,
+                           Take{batch_, h, vertex_rows.data(), vertices.data()});
   }
 
   // Checks the sides of this batch. The layer before it is checked too, since the layer above it is known
@@ -125,9 +138,8 @@ class BatchMesher {
     auto triangles = backend_.template allocate<Triangle>(num_triangles);
     backend_.launch("placing vertices", n_ * MeshBatch::kRows,
                     PlaceVertices{batch_, vertex_rows.data(), first_number, vertices.data()});
-    backend_.launch_groups("taking normals", n_, TakeNormals::kThreads,
-                           TakeNormals{batch_, static_cast<float>(0.25 * batch_.grid.samples.step),
-                                       vertex_rows.data(), vertices.data()});
+    batch_.grid.in_patch ? take_normals<Frame::kPatch>(vertex_rows, vertices)
+                         : take_normals<Frame::kBody>(vertex_rows, vertices);
     backend_.launch("filling the halo of vertices", n_ * HaloThread::kSamples, FillVertexHalo{batch_});
     backend_.launch("making triangles", n_ * MeshBatch::kRows,
                     MakeTriangles{batch_, triangle_rows.data(), triangles.data()});

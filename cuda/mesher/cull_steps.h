@@ -66,17 +66,17 @@ struct NarrowLists {
   CullNodes parents;
   std::uint32_t nodes_a_parent;
 
-  // Where the cells of Gabor impulses that may reach a block have their centres. Gabor noise moves its points
-  // into the supports of the body's kernels.
+  // Where the cells of Gabor impulses that may reach a block have their centres. Gabor noise of the body's
+  // frame moves its points into the supports of the body's kernels; that of a patch leaves them in place.
   ASTROLITH_HD Box cells_around(const Box& box) const {
     const Box& supports = field.body.supports;
-    const Box inside =
-        moved_into(projected_block(field, box), to_float(supports.min), to_float(supports.max));
-    return widened(inside, wide_margin);
+    const Box projected = projected_block(field, box);
+    const Box inside = moved_into(projected, to_float(supports.min), to_float(supports.max));
+    return widened(grid.in_patch ? box_of_both(inside, projected) : inside, wide_margin);
   }
   // The box that the elements of a list must reach.
   ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {
-    const Box box = grid.box(node.x, node.y, node.z, node.size);
+    const Box box = grid.box_in_body(node.x, node.y, node.z, node.size);
     if (lists.is_boulders(list)) return box;
     if (lists.is_craters(list)) return projected_block(field, box);
     const Box at = list < lists.leaves ? body_box(field.body, field.arrays, box) : cells_around(box);
@@ -154,8 +154,9 @@ struct FlagMixed {
     if (node.size == 0) return;
     const ListsOfNode of_node{field, nodes.numbers, nodes.ranges + i * lists.count()};
     Interval kept[kMostKeptHeights];
-    const BlockContent content = field_content(field, of_node, grid.box(node.x, node.y, node.z, node.size),
-                                               {scratch + of_node.ranges[0].first, kept});
+    const BlockContent content =
+        field_content(field, of_node, grid.box_in_body(node.x, node.y, node.z, node.size),
+                      {scratch + of_node.ranges[0].first, kept});
     if (content == BlockContent::kInside && grid.closed && is_at_border(node)) {
       *failure = static_cast<std::uint32_t>(MeshFailure::kBorder);
     }

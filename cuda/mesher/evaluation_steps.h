@@ -5,7 +5,7 @@
 
 #include "cuda/backend.h"
 #include "cuda/mesher/mesh_steps.h"
-#include "synthesis/field/field_tables.h"
+#include "synthesis/field/field_at_point.h"
 
 namespace astrolith {
 
@@ -91,7 +91,15 @@ class BlockStage {
   StagedLists<GaborImpulse> gabor_;
 };
 
+// A point of the grid along the body's axes, as the functions of synthesis/field/field_at_point.h take it in
+// the frame.
+template <Frame frame>
+ASTROLITH_HD Vec3f along_body(const MeshGrid& grid, const Vec3f& p) {
+  return frame == Frame::kPatch ? grid.place.along_body(p) : p;
+}
+
 // Each group of threads evaluates the samples of one block.
+template <Frame frame>
 struct EvaluateSamples {
   static constexpr unsigned kThreads = 256;
   static constexpr std::size_t kGroupBytes = BlockStage::kBytes;
@@ -122,7 +130,7 @@ struct EvaluateSamples {
       const int gx = block.x * kBlockCells + t.x, gy = block.y * kBlockCells + t.y,
                 gz = layer_z * kBlockCells + t.z;
       const Vec3f p{samples.x(gx), samples.y(gy), samples.z(gz)};
-      value = field_at(batch.field, lists, p, band);
+      value = field_at<frame>(batch.field, lists, along_body<frame>(batch.grid, p), band);
       if (batch.grid.closed && value > 0.0f && on_border(batch.grid, gx, gy, gz)) {
         batch.fail(MeshFailure::kBorder);
       }
@@ -132,6 +140,7 @@ struct EvaluateSamples {
 };
 
 // Each group of threads finds the normals at the vertices of one block.
+template <Frame frame>
 struct TakeNormals {
   static constexpr unsigned kThreads = 128;
   static constexpr std::uint32_t kRows = MeshBatch::kRows;
@@ -177,9 +186,11 @@ struct TakeNormals {
  private:
   ASTROLITH_HD void take(const BlockLists& lists, MeshVertex& vertex) const {
     Vec3f corners[4];
-    for (int k = 0; k < 4; ++k) corners[k] = normal_probe(vertex.position, h, k);
+    for (int k = 0; k < 4; ++k) {
+      corners[k] = along_body<frame>(batch.grid, normal_probe(vertex.position, h, k));
+    }
     float values[4];
-    field_at_tetrahedron(batch.field, lists, corners, values);
+    field_at_tetrahedron<frame>(batch.field, lists, corners, values);
     take_normal(values, vertex);
   }
 };

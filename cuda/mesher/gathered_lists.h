@@ -16,7 +16,7 @@ struct GatherFrom {
 
   ASTROLITH_HD Box box(std::size_t block) const {
     const CullNode& n = blocks.nodes[block];
-    return grid.box(n.x, n.y, n.z, 1);
+    return grid.box_in_body(n.x, n.y, n.z, 1);
   }
   ASTROLITH_HD ListRange range(std::size_t block, std::size_t list) const {
     return blocks.ranges[block * lists.count() + list];

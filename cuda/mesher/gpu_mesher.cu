@@ -11,4 +11,10 @@ MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, 
   return mesh_field_on(backend, field, bounds, resolution, sink, progress, tile);
 }
 
+MeshStatistics mesh_patch_on_gpu(const PatchField& field, double size, int resolution, MeshSink& sink,
+                                 const Progress& progress) {
+  DeviceBackend backend;
+  return mesh_patch_on(backend, field, size, resolution, sink, progress);
+}
+
 }  // namespace astrolith

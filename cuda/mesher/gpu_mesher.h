@@ -5,11 +5,12 @@
 
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/field/patch_field.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 
-// The reason why the field cannot be meshed on a GPU in blocks with sides of `block_side` (length units), in
+// The reason why a field cannot be meshed on a GPU in blocks with sides of `block_side` (length units), in
 // a few words ("masks by more than 16 layers at a time"). Empty if it can.
 std::string obstacle_on_gpu(const FieldView& field, double block_side);
 
@@ -18,5 +19,10 @@ std::string obstacle_on_gpu(const FieldView& field, double block_side);
 // Call probe_device() (cuda/device.h) first.
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,
                                  MeshSink& sink, const Progress& progress = {}, MeshTile tile = {});
+
+// The same for mesh_patch. Expects a field that was made for a patch with this centre, and for whose
+// patch_tables() obstacle_on_gpu() is empty.
+MeshStatistics mesh_patch_on_gpu(const PatchField& field, double size, int resolution, MeshSink& sink,
+                                 const Progress& progress = {});
 
 }  // namespace astrolith

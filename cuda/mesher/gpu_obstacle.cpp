@@ -33,7 +33,7 @@ struct ImpulseCells {
 std::string obstacle_on_gpu(const FieldView& field, double block_side) {
   if (field.num_kept_heights > kMostKeptHeights) return "masks by more than 16 layers at a time";
   ImpulseCells cells{field, block_side};
-  for (const FieldLayer& layer : std::span(field.layers, field.num_layers)) layer.noise.visit(cells);
+  for (const FieldLayer& layer : std::span(field.layers, field.num_layers)) field.noise(layer).visit(cells);
   if (cells.of_spots > kMostCells) return "spots so much smaller than the mesh's cells";
   return cells.of_gabor > kMostCells ? "Gabor kernels so much smaller than the mesh's cells" : "";
 }

@@ -1,5 +1,7 @@
 #include "cuda/mesher/mesh_batch.h"
 
+#include <algorithm>
+
 namespace astrolith {
 namespace {
 
@@ -49,6 +51,21 @@ RowOfBlocks row_around(std::span<const BlockColumn> layer, std::size_t i) {
 }
 
 }  // namespace
+
+MeshGrid grid_of_field(const Box& bounds, int resolution, MeshTile tile) {
+  const SampleGrid samples = make_sample_grid(bounds, resolution);
+  return {{samples, window_of_tile<kBlockCells>(samples, tile), true}};
+}
+
+MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution) {
+  const SampleGrid samples = make_patch_grid(size, resolution);
+  return {{samples, window_of_patch(samples), false}, true, place};
+}
+
+double block_side(const MeshGrid& grid) {
+  const Vec3d extent = grid.box_in_body(0, 0, 0, 1).extent();
+  return std::max({extent.x, extent.y, extent.z});
+}
 
 std::vector<BlockPlace> place_blocks(const MeshGrid& grid, int first_z,
                                      std::span<const std::vector<BlockColumn>> layers,

@@ -8,13 +8,32 @@
 #include <span>
 #include <vector>
 
+#include "synthesis/field/patch_place.h"
 #include "synthesis/mesh/block_layer.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 
 using MeshBlock = LayerBlock<kBlockCells>;
-using MeshGrid = BlockGrid<kBlockCells>;
+
+// The grid of a mesh and the frame that its coordinates belong to.
+struct MeshGrid : BlockGrid<kBlockCells> {
+  bool in_patch = false;  // whether the grid lies in the patch at `place`; else it lies in the body's frame
+  PatchPlace place{{}};
+
+  // A box of the body's frame that holds `size` x `size` blocks of layer z (BlockGrid::box).
+  ASTROLITH_HD Box box_in_body(int x, int y, int z, int size) const {
+    const Box blocks = box(x, y, z, size);
+    return in_patch ? place.in_body(blocks) : blocks;
+  }
+};
+
+// The grids of mesh_field and mesh_patch (synthesis/mesh/mesher.h), which say what they throw.
+MeshGrid grid_of_field(const Box& bounds, int resolution, MeshTile tile = {});
+MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution);
+
+// The longest side of a block's box in the body's frame, for obstacle_on_gpu(), length units.
+double block_side(const MeshGrid& grid);
 
 // Why a batch could not be meshed. The backend's memory holds it as a number.
 enum class MeshFailure : std::uint32_t { kNone, kBorder, kMissingBlock, kOpenSide };

@@ -10,7 +10,7 @@ struct GroundAxes {
   Vec3d right{1, 0, 0}, ahead{0, 1, 0}, up{0, 0, 1};
 
   // A vector given along right, ahead and up, in the frame of the axes.
-  Vec3d to_frame(const Vec3d& v) const { return v.x * right + v.y * ahead + v.z * up; }
+  ASTROLITH_HD Vec3d to_frame(const Vec3d& v) const { return v.x * right + v.y * ahead + v.z * up; }
 };
 
 // The axes about a unit vector: +z leans ahead, or +x where up is along z.

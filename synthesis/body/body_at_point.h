@@ -2,6 +2,7 @@
 #pragma once
 
 #include "synthesis/body/body_tables.h"
+#include "synthesis/body/local_metaballs.h"
 #include "synthesis/body/surface_projection.h"
 
 namespace astrolith {
@@ -58,6 +59,17 @@ ASTROLITH_HD inline BodyAtPoint unwarped_body_at(const BodyTables& body, const A
     }
   }
   return {stack[0].distance, {stack[0].gx, stack[0].gy, stack[0].gz}, p};
+}
+
+// A plain body at the point origin + p, with the bits of evaluate_local_metaballs() (local_metaballs.h). The
+// point is already warped by the warp of the body; `at` of the result is relative to the origin too.
+ASTROLITH_HD inline BodyAtPoint local_plain_body_at(const BodyTables& body, const ArrayView& arrays,
+                                                    const LeafLists& lists, const Vec3d& origin,
+                                                    const Vec3f& p) {
+  const MetaballParameters<double> parameters = in_double((*arrays[body.leaves]).metaballs);
+  const SurfaceDistance<double> d =
+      local_distance(parameters, lists.spheres + lists.first[0], lists.first[1] - lists.first[0], origin, p);
+  return {static_cast<float>(d.distance), to_float(d.log_gradient), p};
 }
 
 ASTROLITH_HD inline BodyAtPoint body_at(const BodyTables& body, const ArrayView& arrays,

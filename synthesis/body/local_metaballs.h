@@ -7,6 +7,22 @@
 
 namespace astrolith {
 
+// s and grad L of metaballs at the point origin + p, computed in double precision.
+ASTROLITH_HD inline SurfaceDistance<double> local_distance(const MetaballParameters<double>& body,
+                                                           const MetaballSphere<float>* spheres,
+                                                           std::uint32_t count, const Vec3d& origin,
+                                                           const Vec3f& local) {
+  const Vec3d p = origin + Vec3d{double{local.x}, double{local.y}, double{local.z}};
+  MetaballTotals<double> totals;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const MetaballSphere<float>& s = spheres[i];
+    const MetaballSphere<double> sphere{{double{s.center.x}, double{s.center.y}, double{s.center.z}},
+                                        double{s.inverse_radius_squared}};
+    accumulate_metaball(body, sphere, p, totals);
+  }
+  return metaball_distance(body, totals.net());
+}
+
 // evaluate_metaballs() at the points origin + (x, y, z), computed in double precision and rounded to float.
 // Its digits do not depend on the ratio of the distance between points to the size of the body.
 void evaluate_local_metaballs(const MetaballsView& metaballs, const Vec3d& origin, int n, const float* x,

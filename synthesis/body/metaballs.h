@@ -63,7 +63,7 @@ struct MetaballParameters {
   T m{};                              // other kernels only
 };
 
-inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) {
+ASTROLITH_HD inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) {
   const CompactKernel<float>& k = b.compact_kernel;
   return {b.m_a,
           b.m_b,

@@ -152,11 +152,9 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const FieldLayer& layer = model.layers[i];
-    const bool in_patch = layer.in_patch >= 0;
     const SpotNoise* noise = noise_of(model, layer).get_if<SpotNoise>();
     if (noise == nullptr) continue;
-    const Vec3d& origin = model.tables.patch_origin;
-    const Box at = in_patch ? Box{box.min - origin, box.max - origin} : box;
+    const Box at = model.tables.in_frame_of(layer, box);
     spots.resize(model.layers.size());
     spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(at, layer.join.displaced),
                             spots_of(of_larger, i));

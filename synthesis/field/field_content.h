@@ -31,7 +31,6 @@ struct LayerOverBox {
   const Box& projected;  // holds the projections of the points of the box on the bare surface
   Interval before;
   Interval* kept;  // bounds of the heights kept for masks, by slot
-  bool in_patch;   // whether the noise is that in the frame of the field's patch
 
   template <class Noise>
   ASTROLITH_HD Interval operator()(const Noise& noise) const {
@@ -43,10 +42,11 @@ struct LayerOverBox {
   }
 
  private:
-  ASTROLITH_HD const LayerJoin& join() const { return f.layers[number].join; }
+  ASTROLITH_HD const FieldLayer& layer() const { return f.layers[number]; }
+  ASTROLITH_HD const LayerJoin& join() const { return layer().join; }
   ASTROLITH_HD Interval changed_elevation(const CraterRelief& relief) const {
     const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
-    return bound_cratered_elevation(relief, f.arrays, for_each, projected, before);
+    return bound_cratered_elevation(relief, f.arrays, for_each, f.in_frame_of(layer(), projected), before);
   }
   template <class Noise>
   ASTROLITH_HD Interval heights_of(const Noise& noise) const {
@@ -56,18 +56,14 @@ struct LayerOverBox {
       return bound_heights(noise, f.arrays, box_of<Noise>());
     }
   }
-  // Holds the places where a noise is evaluated for the points of the box.
+  // Holds the places where a noise is evaluated for the points of the box, in the coordinates of the noise.
   template <class Noise>
   ASTROLITH_HD Box box_of() const {
     if constexpr (Noise::kTraits.on_surface) {
-      return in_frame(projected);
+      return f.in_frame_of(layer(), projected);
     } else {
-      return displaced_layer_box(in_frame(box), join().displaced);
+      return displaced_layer_box(f.in_frame_of(layer(), box), join().displaced);
     }
-  }
-  // The box in the coordinates of the noise.
-  ASTROLITH_HD Box in_frame(const Box& of_body) const {
-    return in_patch ? Box{of_body.min - f.patch_origin, of_body.max - f.patch_origin} : of_body;
   }
   ASTROLITH_HD Interval joined(const Interval& heights) const {
     const double slack = kHeightSlack * join().height_bound;
@@ -83,9 +79,7 @@ ASTROLITH_HD Interval bound_elevations(const FieldView& f, const Lists& lists, c
                                        const Box& projected, Interval* kept) {
   Interval elevation;
   for (std::uint32_t i = 0; i < f.num_layers; ++i) {
-    const bool in_patch = f.layers[i].in_patch >= 0;
-    const LayerNoise& noise = in_patch ? f.patch_noises[f.layers[i].in_patch] : f.layers[i].noise;
-    elevation = noise.visit(LayerOverBox<Lists>{f, lists, i, box, projected, elevation, kept, in_patch});
+    elevation = f.noise(f.layers[i]).visit(LayerOverBox<Lists>{f, lists, i, box, projected, elevation, kept});
   }
   const double slack = kHeightSlack * f.height_bound;
   return {elevation.low - slack, elevation.high + slack};

@@ -53,6 +53,10 @@ struct FieldModel {
   std::vector<std::optional<PatchCraters>> patch_craters;    // by the number of the list of craters
   std::vector<std::optional<BoulderKernel>> patch_boulders;  // by the number of the boulder
   bool has_patch_layers = false;                             // whether one of these is there
+  // The tables for points relative to the centre of the patch, and their layers. add_patch_tables() makes
+  // them.
+  FieldView patch_tables{};
+  std::vector<FieldLayer> patch_layers;
 
   std::vector<LayerLeftOut> left_out;
 
@@ -68,6 +72,9 @@ struct FieldModel {
 // Adds a recipe's layers to a model that holds its body. Throws InputError as ImplicitField does.
 void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model,
                 const Progress& progress = {});
+
+// Makes the tables of the patch from those of the body's frame. Expects a complete model for a patch.
+void add_patch_tables(FieldModel& model);
 
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);

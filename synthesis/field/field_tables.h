@@ -44,7 +44,7 @@ struct FieldLayer {
   LayerNoise noise;
   LayerJoin join;
   std::uint32_t first_list = 0;  // number of the layer's first list of impulses, for spots and Gabor noise
-  std::int32_t in_patch = -1;    // number of the layer's noise in the frame of a patch; -1: it has none
+  std::int32_t in_patch = -1;    // number of the layer's noise in PatchTables; -1: it has none
 };
 
 // Every block has one list of impulses for each kind of spots, and one for each band of Gabor noise.
@@ -53,7 +53,17 @@ struct ImpulseList {
   std::uint32_t element;  // number of the kind of spots or of the band within the layer
 };
 
-// A view of a field's tables. Ranges point into `arrays`.
+// What a field for a patch has in the frame of the patch: in coordinates relative to the patch's centre,
+// along the body's axes.
+struct PatchTables {
+  Vec3d origin;                     // the centre of the patch
+  ArrayRange<LayerNoise> noises;    // the noise that replaces a layer's there, by FieldLayer::in_patch
+  ArrayRange<CoordinateWarp> warp;  // the warp of a plain body, if any noise is fine; else there is none
+};
+
+// A view of a field's tables. Ranges point into `arrays`. A field for a patch has two views, of one set of
+// arrays: its tables for points of the body's frame, and those for points relative to the patch's centre
+// (ImplicitField::patch_tables()). Boxes are the body's in both.
 struct FieldView {
   ArrayView arrays;
   const FieldLayer* layers;
@@ -68,16 +78,25 @@ struct FieldView {
   float longest_step;                       // height_bound as a float: how far points are projected
   float steepest;                           // the body's lipschitz_bound as a float
   bool reads_projections;  // whether bounds of a layer depend on the box of the points' projections
-  // Noise in the frame of the patch that the field was made for. A GPU does not read it.
-  const LayerNoise* patch_noises = nullptr;
-  Vec3d patch_origin;
+  PatchTables patch;       // empty where the field was made for no patch
 
   // Every block has one list of craters for each layer of craters, and after these one list of boulders.
   ASTROLITH_HD std::uint32_t num_landform_lists() const { return crater_layers.count + 1; }
   ASTROLITH_HD std::uint32_t boulder_list() const { return crater_layers.count; }
   ASTROLITH_HD const BodyLeaf& leaf(std::uint32_t number) const { return arrays[body.leaves][number]; }
+  // The noise of a layer, in the frame of the patch where it has one there.
+  ASTROLITH_HD const LayerNoise& noise(const FieldLayer& layer) const {
+    return layer.in_patch < 0 ? layer.noise : arrays[patch.noises][layer.in_patch];
+  }
+  // A box of the body's frame in the frame of noise(layer).
+  ASTROLITH_HD Box in_frame_of(const FieldLayer& layer, const Box& box) const {
+    return layer.in_patch < 0 ? box : Box{box.min - patch.origin, box.max - patch.origin};
+  }
+  ASTROLITH_HD const FieldLayer& crater_layer(std::uint32_t list) const {
+    return layers[arrays[crater_layers][list]];
+  }
   ASTROLITH_HD const CraterRelief& craters(std::uint32_t list) const {
-    return *layers[arrays[crater_layers][list]].noise.get_if<CraterRelief>();
+    return *noise(crater_layer(list)).get_if<CraterRelief>();
   }
 };
 

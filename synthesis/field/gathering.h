@@ -24,7 +24,8 @@ ASTROLITH_HD inline bool metaball_reaches(const BodyLeaf& leaf, const MetaballSp
 // Whether a crater of a list reaches a block; `projected` is the projected_block() of the block.
 ASTROLITH_HD inline bool crater_reaches(const FieldView& f, std::uint32_t list, std::uint32_t number,
                                         const Box& projected) {
-  return boxes_touch(crater_reach(f.arrays[f.craters(list).craters][number]), projected);
+  return boxes_touch(crater_reach(f.arrays[f.craters(list).craters][number]),
+                     f.in_frame_of(f.crater_layer(list), projected));
 }
 
 // Whether a boulder reaches a block.
@@ -37,8 +38,8 @@ template <class Write>
 ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box& box, Write&& write) {
   const ImpulseList from = f.arrays[f.spot_lists][list];
   const FieldLayer& layer = f.layers[from.layer];
-  const SpotNoise& noise = *layer.noise.get_if<SpotNoise>();
-  const Box where = displaced_layer_box(box, layer.join.displaced);
+  const SpotNoise& noise = *f.noise(layer).get_if<SpotNoise>();
+  const Box where = displaced_layer_box(f.in_frame_of(layer, box), layer.join.displaced);
   for_each_spot(f.arrays[noise.kinds][from.element], f.arrays[noise.thresholds],
                 moved_into(where, noise.low, noise.high), write);
 }
@@ -125,15 +126,19 @@ template <class Write, class Share = AllCells>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write, const Share& share = {}) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
-  const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
+  const FieldLayer& layer = f.layers[from.layer];
+  const GaborSurfaceNoise& noise = *f.noise(layer).get_if<GaborSurfaceNoise>();
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
-  const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
+  const FloatBox at = outer_float_box(f.in_frame_of(layer, projected_block(f, box)), noise.low, noise.high);
   const GaborTarget target = gabor_target(band.a, at.center, at.half);
   const auto write_reaching = [&](const GaborImpulse& impulse) {
     if (gabor_reaches(impulse, target)) write(impulse);
   };
   for_each_gabor_cell(band, at, share, [&](int x, int y, int z) {
-    const BodyAtPoint s = unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(band, x, y, z));
+    const Vec3f center = gabor_cell_center(band, x, y, z);
+    const BodyAtPoint s = layer.in_patch < 0
+                              ? unwarped_body_at(f.body, f.arrays, metaballs, center)
+                              : local_plain_body_at(f.body, f.arrays, metaballs, f.patch.origin, center);
     for_each_gabor_impulse(band, f.arrays[band.lobes], band.lobes.count, x, y, z, -s.distance, s.gradient,
                            write_reaching);
   });
@@ -144,7 +149,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
 inline double gabor_margin(const FieldView& f) {
   double margin = 0.0;
   for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {
-    const GaborSurfaceNoise& noise = *f.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
+    const GaborSurfaceNoise& noise = *f.noise(f.layers[list.layer]).get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][list.element];
     margin = std::max(margin, 1.01 * double{band.reach} + 2.0 * double{band.cell});
   }

@@ -8,6 +8,7 @@
 #include "numerics/errors.h"
 #include "synthesis/body/body_tables.h"
 #include "synthesis/field/field_batch_internal.h"
+#include "synthesis/field/patch_place.h"
 
 namespace astrolith {
 static_assert(BlockField<ImplicitField>);
@@ -42,9 +43,9 @@ struct BodyPoints {
 
   BodyPoints(const LocalPoints& points, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
-      x[i] = static_cast<float>(points.origin.x + double{points.local.x[i]});
-      y[i] = static_cast<float>(points.origin.y + double{points.local.y[i]});
-      z[i] = static_cast<float>(points.origin.z + double{points.local.z[i]});
+      const Vec3f p =
+          rounded_in_body(points.origin, {points.local.x[i], points.local.y[i], points.local.z[i]});
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
   }
   PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
@@ -196,12 +197,18 @@ std::span<const int> ImplicitField::recipe_layers() const { return model_->recip
 
 const FieldView& ImplicitField::tables() const { return model_->tables; }
 
+const FieldView& ImplicitField::patch_tables() const {
+  if (!model_->patch) throw std::invalid_argument("ImplicitField: the field was made for no patch");
+  return model_->patch_tables;
+}
+
 void FieldModel::finish() {
   tables.spot_lists = arrays.add(spot_lists);
   tables.gabor_lists = arrays.add(gabor_lists);
   tables.crater_layers = arrays.add(crater_layers);
   tables.boulders = arrays.add(boulders);
   update();
+  if (patch) add_patch_tables(*this);
 }
 
 void FieldModel::update() {
@@ -218,8 +225,7 @@ void FieldModel::update() {
     const NoiseTraits traits = traits_of(layer.noise);
     return traits.on_surface && traits.bounded_by_box;
   });
-  tables.patch_noises = patch_noises.data();
-  if (patch) tables.patch_origin = patch->center;
+  if (patch) tables.patch.origin = patch->center;
 }
 
 }  // namespace astrolith

@@ -204,6 +204,9 @@ class ImplicitField {
 
   // The field's tables, for evaluation on a GPU. They live as long as the field.
   const FieldView& tables() const;
+  // The same for points relative to the centre of the patch that the field was made for. Throws
+  // std::invalid_argument where it was made for none.
+  const FieldView& patch_tables() const;
 
  private:
   std::shared_ptr<const FieldModel> model_;

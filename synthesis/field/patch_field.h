@@ -13,26 +13,23 @@
 // Local coordinates lie along the axes of the body's frame, or along given axes, such as those of the ground.
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "geometry/surface/ground_axes.h"
-#include "numerics/interval.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/field/patch_place.h"
 
 namespace astrolith {
 
-// Points that are turned from axes of the ground to the body's frame, a coordinate at a time.
+// Points along the body's axes, from points of a turned patch, a coordinate at a time.
 struct TurnedPoints {
-  TurnedPoints(const GroundAxes& axes, std::span<const float> along_right, std::span<const float> along_ahead,
-               std::span<const float> along_up)
+  TurnedPoints(const PatchPlace& place, std::span<const float> along_right,
+               std::span<const float> along_ahead, std::span<const float> along_up)
       : x(along_up.size()), y(along_up.size()), z(along_up.size()) {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vec3f p =
-          to_float(axes.to_frame({double{along_right[i]}, double{along_ahead[i]}, double{along_up[i]}}));
+      const Vec3f p = place.along_body({along_right[i], along_ahead[i], along_up[i]});
       x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
   }
@@ -41,64 +38,45 @@ struct TurnedPoints {
 
 class PatchBlock {
  public:
-  PatchBlock(FieldBlock block, const Vec3d& origin, const std::optional<GroundAxes>& axes)
-      : block_(std::move(block)), origin_(origin), axes_(axes) {}
+  PatchBlock(FieldBlock block, const PatchPlace& place) : block_(std::move(block)), place_(place) {}
 
   BlockContent content() const { return block_.content(); }
   PatchBlock restricted_to(const Box& local) const {
-    return {block_.restricted_to(in_body(local, origin_, axes_)), origin_, axes_};
+    return {block_.restricted_to(place_.in_body(local)), place_};
   }
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band) const {
-    if (!axes_) return block_.evaluate_local(origin_, x, y, z, value, band);
-    const TurnedPoints p(*axes_, x, y, z);
-    block_.evaluate_local(origin_, p.x, p.y, p.z, value, band);
+    if (!place_.turned) return block_.evaluate_local(place_.origin, x, y, z, value, band);
+    const TurnedPoints p(place_, x, y, z);
+    block_.evaluate_local(place_.origin, p.x, p.y, p.z, value, band);
   }
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const {
-    if (!axes_) return block_.evaluate_local_tetrahedra(origin_, x, y, z, value);
-    const TurnedPoints p(*axes_, x, y, z);
-    block_.evaluate_local_tetrahedra(origin_, p.x, p.y, p.z, value);
-  }
-
-  // A box of the body's frame that holds every point of a local box, after rounding to float coordinates.
-  static Box in_body(const Box& local, const Vec3d& origin, const std::optional<GroundAxes>& axes = {}) {
-    const Box turned = axes ? turned_box(local, *axes) : local;
-    const Box moved{turned.min + origin, turned.max + origin};
-    return widened(moved, 0x1p-23 * largest_coordinate(moved));
+    if (!place_.turned) return block_.evaluate_local_tetrahedra(place_.origin, x, y, z, value);
+    const TurnedPoints p(place_, x, y, z);
+    block_.evaluate_local_tetrahedra(place_.origin, p.x, p.y, p.z, value);
   }
 
  private:
-  // A box of the body's axes that holds a box of the ground's.
-  static Box turned_box(const Box& local, const GroundAxes& axes) {
-    const Vec3d half = 0.5 * local.extent(), center = axes.to_frame(local.center());
-    const auto reach = [&](double Vec3d::*axis) {
-      return half.x * std::fabs(axes.right.*axis) + half.y * std::fabs(axes.ahead.*axis) +
-             half.z * std::fabs(axes.up.*axis);
-    };
-    const Vec3d r{reach(&Vec3d::x), reach(&Vec3d::y), reach(&Vec3d::z)};
-    return {center - r, center + r};
-  }
-
   FieldBlock block_;
-  Vec3d origin_;
-  std::optional<GroundAxes> axes_;
+  PatchPlace place_;
 };
 
 class PatchField {
  public:
   // The field must outlive the PatchField. Without axes, local coordinates lie along the body's.
   PatchField(const ImplicitField& field, const Vec3d& origin, const std::optional<GroundAxes>& axes = {})
-      : field_(field), origin_(origin), axes_(axes) {}
+      : field_(field), place_(origin, axes) {}
 
-  PatchBlock gather(const Box& local) const {
-    return {field_.gather(PatchBlock::in_body(local, origin_, axes_)), origin_, axes_};
-  }
+  PatchBlock gather(const Box& local) const { return {field_.gather(place_.in_body(local)), place_}; }
+
+  // The field that it was made of, and where it lies in that field.
+  const ImplicitField& whole() const { return field_; }
+  const PatchPlace& place() const { return place_; }
 
  private:
   const ImplicitField& field_;
-  Vec3d origin_;
-  std::optional<GroundAxes> axes_;
+  PatchPlace place_;
 };
 
 }  // namespace astrolith

@@ -54,7 +54,8 @@ inline double rise_of(const BoulderLayer&) { return 0.0; }
 // A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {
   BoulderKernel kernel;
-  Box box;
+  Box box;                // in the body's frame
+  bool in_patch = false;  // whether the kernel is relative to the centre of a patch
 };
 std::vector<FieldBoulder> field_boulders(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders);
 

@@ -114,13 +114,30 @@ void evaluate_heights(const FractalNoise& noise, const ArrayView& arrays, int co
   }
 }
 
+namespace {
+
+constexpr float kEverywhere = std::numeric_limits<float>::max();
+
+// The octaves of a noise relative to an origin.
+std::vector<NoiseOctave> octaves_at(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin) {
+  const Vec3d bias{noise.bias.x, noise.bias.y, noise.bias.z};
+  return local_octaves(noise.noise, arrays.span(noise.octaves), placed(noise, bias, origin));
+}
+
+}  // namespace
+
+FractalNoise local_form(const FractalNoise& noise, const Vec3d& origin, ArrayStore& arrays) {
+  FractalNoise local = noise;
+  local.octaves = arrays.add(octaves_at(noise, arrays.view(), origin));
+  local.bias = {};
+  local.low = {-kEverywhere, -kEverywhere, -kEverywhere};
+  local.high = {kEverywhere, kEverywhere, kEverywhere};
+  return local;
+}
+
 void evaluate_local_heights(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin,
                             int count, const float* x, const float* y, const float* z, float* height) {
-  constexpr float kEverywhere = std::numeric_limits<float>::max();
-  const Vec3d scale{noise.scale.x, noise.scale.y, noise.scale.z},
-      bias{noise.bias.x, noise.bias.y, noise.bias.z};
-  const Vec3d q{scale.x * origin.x + bias.x, scale.y * origin.y + bias.y, scale.z * origin.z + bias.z};
-  const std::vector<NoiseOctave> octaves = local_octaves(noise.noise, arrays.span(noise.octaves), q);
+  const std::vector<NoiseOctave> octaves = octaves_at(noise, arrays, origin);
   for (int begin = 0; begin < count; begin += kFractalChunk) {
     const int size = std::min(kFractalChunk, count - begin);
     Chunk qx, qy, qz;

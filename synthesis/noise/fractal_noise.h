@@ -69,9 +69,13 @@ ASTROLITH_HD inline float height_at(const FractalNoise& n, const ArrayView& arra
 void evaluate_heights(const FractalNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 
-// Writes height[i] = n(origin + (x, y, z)[i]). Lattice cells are counted from the cell of the origin, so that
-// the heights resolve the float steps of x, y and z. The points must lie within the domain, and
-// has_local_form() must hold.
+// The noise relative to an origin: its n(p) is n(origin + p) of the given noise. Lattice cells are counted
+// from the cell of the origin, so that the heights resolve the float steps of p. The points must lie within
+// the domain, and has_local_form() must hold.
+FractalNoise local_form(const FractalNoise& noise, const Vec3d& origin, ArrayStore& arrays);
+
+// Writes height[i] = n(origin + (x, y, z)[i]). The bits are those of the local_form(), and so are the
+// conditions.
 void evaluate_local_heights(const FractalNoise& n, const ArrayView& arrays, const Vec3d& origin, int count,
                             const float* x, const float* y, const float* z, float* height);
 

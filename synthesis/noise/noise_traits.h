@@ -24,7 +24,7 @@ struct NoiseTraits {
   // on_surface.
   Stated<bool> bounded_by_box;
   // Whether the noise of the body's frame can be evaluated at coordinates local to a patch. It then has a
-  // has_local_form(), which tells whether its parameters allow that, and an evaluate_local_heights().
+  // has_local_form(), whether its parameters allow that, an evaluate_local_heights() and a local_form().
   Stated<bool> local_form;
   Stated<NoiseLists> lists;
 };

@@ -102,11 +102,15 @@ class TurnedMesh : public MeshSink {
 };
 
 MeshStatistics mesh_cube(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
-                         const Progress& progress) {
-  if (!region.axes)
-    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
+                         const Progress& progress, MeshingDevice device) {
+  const PatchField patch(field, region.center, region.axes);
+  const auto mesh = [&](MeshSink& to) {
+    return device == MeshingDevice::kGpu ? mesh_patch_on_gpu(patch, region.size, resolution, to, progress)
+                                         : mesh_patch(patch, region.size, resolution, to, progress);
+  };
+  if (!region.axes) return mesh(sink);
   TurnedMesh turned(*region.axes, sink);
-  return mesh_patch(PatchField(field, region.center, region.axes), region.size, resolution, turned, progress);
+  return mesh(turned);
 }
 
 }  // namespace
@@ -134,14 +138,17 @@ Region tile_region(int number, int count) {
 }
 
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
-  if (region.is_patch) return "patches";
-  return obstacle_on_gpu(field.tables(), block_side(field.bounds(), resolution));
+  if (region.is_patch) {
+    const PatchPlace place(region.center, region.axes);
+    return obstacle_on_gpu(field.patch_tables(), block_side(grid_of_patch(place, region.size, resolution)));
+  }
+  return obstacle_on_gpu(field.tables(), block_side(grid_of_field(field.bounds(), resolution)));
 }
 
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device) {
   if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
-  if (region.is_patch) return mesh_cube(field, region, resolution, sink, progress);
+  if (region.is_patch) return mesh_cube(field, region, resolution, sink, progress, device);
   return device == MeshingDevice::kGpu
              ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
@@ -175,7 +182,7 @@ void place_on_ground(const ImplicitField& field, Region& region) {
   const int steps = region.aligned ? 3 : 1;
   for (int step = 0; step < steps; ++step) {
     MeshCollector ground;
-    mesh_cube(field, region, kLookAround, ground, {});
+    mesh_cube(field, region, kLookAround, ground, {}, MeshingDevice::kCpu);
     if (ground.mesh.triangles.empty() && step == 0) return;
     if (ground.mesh.triangles.empty()) break;
     region.plane = mean_plane(ground.mesh);

@@ -18,11 +18,6 @@ namespace {
 
 using testing::random_recipe;
 
-MeshGrid grid_of(const ImplicitField& field, int resolution) {
-  const SampleGrid samples = make_sample_grid(field.bounds(), resolution);
-  return {samples, window_of_tile<kBlockCells>(samples, {}), true};
-}
-
 // A block by its place: layer, y and x.
 using Place = std::array<int, 3>;
 
@@ -54,7 +49,7 @@ void expect_same_lists(const BlockListStore& cpu, const BlockListArrays& twin) {
 
 void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& order) {
   const ImplicitField field(recipe);
-  const MeshGrid grid = grid_of(field, resolution);
+  const MeshGrid grid = grid_of_field(field.bounds(), resolution);
   const std::vector<Place> cpu = blocks_of_cpu(field, grid);
 
   HostBackend backend(std::size_t{1} << 34, order);
@@ -102,8 +97,7 @@ TEST(BlockCuller, TakesThreadsInAnyOrder) {
 // A body that fills the border of the grid is refused, as it is by the CPU.
 TEST(BlockCuller, SaysWhereTheBodyFillsTheBorder) {
   const ImplicitField field(testing::sphere_recipe(1.0));
-  const SampleGrid samples = make_sample_grid({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
-  const MeshGrid grid{samples, window_of_tile<kBlockCells>(samples, {}), true};
+  const MeshGrid grid = grid_of_field({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
   HostBackend backend;
   const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
   BlockCuller<HostBackend> culler(backend, field.tables(), on_backend.view(), grid, 0.0);

@@ -93,7 +93,7 @@ std::vector<float> values_at(const ImplicitField& field, const Vec3d& center,
   testing::FloatPoints all;
   Box box;
   for (const Vec3d& p : points) all.add(p), box.extend(p);
-  const FieldBlock block = field.gather(PatchBlock::in_body(box, center));
+  const FieldBlock block = field.gather(PatchPlace(center).in_body(box));
   block.evaluate_local(center, all.x, all.y, all.z, value, kExactEverywhere);
   return value;
 }
