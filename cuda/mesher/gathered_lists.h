@@ -65,6 +65,7 @@ struct GatherSpots {
 };
 
 // Writes the impulses of Gabor list i % lists that may reach block i / lists.
+template <Frame frame>
 struct GatherGabor {
   GatherFrom from;
   LeafLists metaballs;  // the wide lists of all blocks
@@ -73,8 +74,8 @@ struct GatherGabor {
   ASTROLITH_HD void operator()(std::size_t i, ListShare share, Writer& write) const {
     const std::uint32_t lists = from.field.gabor_lists.count;
     const LeafLists of_block{metaballs.spheres, metaballs.first + i / lists * from.lists.leaves};
-    gather_gabor(from.field, static_cast<std::uint32_t>(i % lists), of_block, from.box(i / lists), write,
-                 share);
+    gather_gabor<frame>(from.field, static_cast<std::uint32_t>(i % lists), of_block, from.box(i / lists),
+                        write, share);
   }
 };
 
@@ -92,7 +93,8 @@ class GatheredLists {
         landforms_(write_lists<std::uint32_t>(backend, "gathering craters and boulders",
                                               count * landform_lists_, GatherLandforms{from})),
         spots_(write_lists<SpotImpulse>(backend, "gathering spots", count * spot_lists_, GatherSpots{from})),
-        gabor_(gather_gabor_lists(backend, from, count)) {}
+        gabor_(from.grid.in_patch ? gather_gabor_lists<Frame::kPatch>(backend, from, count)
+                                  : gather_gabor_lists<Frame::kBody>(backend, from, count)) {}
 
   // The lists in the backend's memory. The view is valid while this object lives.
   BlockListArrays view() const {
@@ -111,15 +113,17 @@ class GatheredLists {
   }
 
  private:
+  template <Frame frame>
   BackendLists<Backend, GaborImpulse> gather_gabor_lists(Backend& backend, const GatherFrom& from,
                                                          std::size_t count) {
-    if (gabor_lists_ == 0) return write_lists<GaborImpulse>(backend, "gathering", 0, GatherGabor{});
+    using Gather = GatherGabor<frame>;
+    if (gabor_lists_ == 0) return write_lists<GaborImpulse>(backend, "gathering", 0, Gather{});
     // The frames of impulses follow from the body at the centres of their cells, which lie around the blocks.
     const auto wide =
         write_lists<MetaballSphere<float>>(backend, "gathering metaballs", count * leaves_,
                                            GatherMetaballs{from, from.lists.leaves + from.lists.landforms});
     return write_lists<GaborImpulse>(backend, "gathering Gabor impulses", count * gabor_lists_,
-                                     GatherGabor{from, {wide.items.data(), wide.first.data()}},
+                                     Gather{from, {wide.items.data(), wide.first.data()}},
                                      shares_of(count * gabor_lists_));
   }
 

@@ -5,6 +5,7 @@
 #include "synthesis/body/body_at_point.h"
 #include "synthesis/body/body_bounds.h"
 #include "synthesis/field/content_bounds.h"
+#include "synthesis/field/field_at_point.h"
 #include "synthesis/field/field_tables.h"
 
 namespace astrolith {
@@ -121,8 +122,9 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
 // Calls write(impulse) for the Gabor impulses of list number `list` that may reach the block. Impulses that
 // do not reach it may be among them; they add nothing. The frames of impulses follow from the body at the
 // centres of their cells, so `metaballs` must hold the metaballs that reach the cells around the block.
-// A share of them stands for that share of the cells.
-template <class Write, class Share = AllCells>
+// A share of them stands for that share of the cells. Frame::kBody leaves out the code for noise in the frame
+// of a patch, for which a GPU needs 148 registers, not 105.
+template <Frame frame = Frame::kPatch, class Write, class Share = AllCells>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write, const Share& share = {}) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
@@ -136,7 +138,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
   };
   for_each_gabor_cell(band, at, share, [&](int x, int y, int z) {
     const Vec3f center = gabor_cell_center(band, x, y, z);
-    const BodyAtPoint s = layer.in_patch < 0
+    const BodyAtPoint s = frame == Frame::kBody || layer.in_patch < 0
                               ? unwarped_body_at(f.body, f.arrays, metaballs, center)
                               : local_plain_body_at(f.body, f.arrays, metaballs, f.patch.origin, center);
     for_each_gabor_impulse(band, f.arrays[band.lobes], band.lobes.count, x, y, z, -s.distance, s.gradient,
