@@ -55,6 +55,8 @@ table() {
     row "$recipe, 1 M triangles" synthesis/examples/$recipe.json --triangles 1e6
     row "$recipe, 10 M triangles" synthesis/examples/$recipe.json --triangles 1e7
   done
+  row "comet_nucleus, an aligned patch" synthesis/examples/comet_nucleus.json \
+    --patch 0.332263 0.444628 -0.197816 0.01 --aligned --resolution 1000
   local on_gpu on_cpu family=(synthesis/examples/family_of_rubble.json --members 0:200 --triangles 20000)
   on_gpu=$(seconds $build/bin/synth "${family[@]}" --device cuda -o "$made/g{member}.ply")
   on_cpu=$(seconds $build/bin/synth "${family[@]}" --device cpu --threads 2 -o "$made/c{member}.ply")
@@ -67,11 +69,13 @@ table() {
 
 sanitize() {
   command -v compute-sanitizer >/dev/null || { echo "compute-sanitizer is not installed here: left out"; return; }
-  local tool recipe result
+  local tool recipe result name options
   for tool in memcheck racecheck synccheck initcheck; do
-    for recipe in layers_combined itokawa_relief craters_power_law spots_composed kernels boulders regions; do
+    for recipe in layers_combined itokawa_relief craters_power_law spots_composed kernels boulders regions \
+      "comet_nucleus --patch 0.332263 0.444628 -0.197816 0.01 --aligned"; do
       result=passes
-      timeout 30 compute-sanitizer --tool $tool --error-exitcode 1 $build/bin/synth synthesis/examples/$recipe.json \
+      read -r name options <<<"$recipe"
+      timeout 30 compute-sanitizer --tool $tool --error-exitcode 1 $build/bin/synth synthesis/examples/$name.json $options \
         --resolution 20 --device cuda -o "$made/checked.ply" >"$made/said.txt" 2>&1 || result="FAILS ($?): $(tail -1 "$made/said.txt")"
       echo "- $tool, \`$recipe\`: $result"
     done
