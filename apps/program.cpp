@@ -105,9 +105,9 @@ std::string unknown_option(const CLI::App& parser, const OptionTable& options) {
     if (!word.starts_with('-') || dashes == std::string::npos) continue;
     const std::string name = word.substr(dashes, word.find('=') - dashes);
     for (const OptionTable::Command& command : options.commands()) {
-      if (command.options->find("--" + name) != nullptr)
-        return word + ": is an option of '" + parser.get_name() + " " + command.name +
-               "'; write the command before it";
+      if (command.options->find("--" + name) == nullptr) continue;
+      const std::string its = word + ": is an option of '" + parser.get_name() + " " + command.name + "'";
+      return its + (parser.get_subcommands().empty() ? "; write the command before it" : " alone");
     }
     const std::string nearest = nearest_name(name, long_names(options));
     return word + ": there is no such option" +
@@ -119,9 +119,11 @@ std::string unknown_option(const CLI::App& parser, const OptionTable& options) {
 // What is wrong with a command line whose options all exist. CLI11 says "At Most 1 required but received 2".
 std::string plain_words(const CLI::ParseError& error, const CLI::App& parser) {
   const std::string text = error.what();
+  const auto says = [&](const char* words) { return text.find(words) != text.npos; };
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    return text.substr(0, text.find(':')) +
-           (text.ends_with("missing") ? ": a value is missing" : ": is given twice, or with too many values");
+    const std::string name = text.substr(0, text.find(':'));
+    if (says(": At Most ")) return name + ": is given twice, or with too many values";
+    if (says(": At least ") || text.ends_with("missing")) return name + ": a value is missing";
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !parser.remaining(true).empty())
     return parser.remaining(true).front() + ": belongs to no option, and no argument is left for it";

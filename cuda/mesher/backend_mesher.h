@@ -4,6 +4,7 @@
 // than the backend's memory.
 #pragma once
 
+#include <stdexcept>
 #include <utility>
 
 #include "cuda/mesher/batch_mesher.h"
@@ -153,8 +154,8 @@ class BackendMesher {
   MeshedLayers<Backend> made_, before_;  // meshes of the last two batches, whose memory is used again
 };
 
-// mesh_field (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field for which
-// obstacle_on_gpu() is empty.
+// mesh_field (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field of no patch, for
+// which obstacle_on_gpu() is empty.
 template <class Backend>
 MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
@@ -162,13 +163,16 @@ MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const
       .run(progress);
 }
 
-// mesh_patch (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field that was made for a
-// patch with this centre, and for whose patch_tables() obstacle_on_gpu() is empty.
+// mesh_patch (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field for
+// whose patch_tables() obstacle_on_gpu() is empty. Throws std::invalid_argument where these are of another
+// patch than the field's place.
 template <class Backend>
 MeshStatistics mesh_patch_on(Backend& backend, const PatchField& field, double size, int resolution,
                              MeshSink& sink, const Progress& progress) {
-  return BackendMesher<Backend>(backend, field.whole().patch_tables(),
-                                grid_of_patch(field.place(), size, resolution), sink)
+  const FieldView& tables = field.whole().patch_tables();
+  if (!(tables.patch.origin == field.place().origin))
+    throw std::invalid_argument("mesh_patch_on: the field was made for another patch");
+  return BackendMesher<Backend>(backend, tables, grid_of_patch(field.place(), size, resolution), sink)
       .run(progress);
 }
 

@@ -67,7 +67,8 @@ struct NarrowLists {
   std::uint32_t nodes_a_parent;
 
   // Where the cells of Gabor impulses that may reach a block have their centres. Gabor noise of the body's
-  // frame moves its points into the supports of the body's kernels; that of a patch leaves them in place.
+  // frame moves its points into the supports of the body's kernels; the domain of a patch's holds them where
+  // they are.
   ASTROLITH_HD Box cells_around(const Box& box) const {
     const Box& supports = field.body.supports;
     const Box projected = projected_block(field, box);

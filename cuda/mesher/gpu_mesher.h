@@ -14,14 +14,13 @@ namespace astrolith {
 // a few words ("masks by more than 16 layers at a time"). Empty if it can.
 std::string obstacle_on_gpu(const FieldView& field, double block_side);
 
-// Expects a field for which obstacle_on_gpu() is empty. Throws what mesh_field throws, and
+// Expects a field of no patch, for which obstacle_on_gpu() is empty. Throws what mesh_field throws, and
 // DeviceError, with CUDA's words, when the device fails or has too little memory for one layer of blocks.
 // Call probe_device() (cuda/device.h) first.
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,
                                  MeshSink& sink, const Progress& progress = {}, MeshTile tile = {});
 
-// The same for mesh_patch. Expects a field that was made for a patch with this centre, and for whose
-// patch_tables() obstacle_on_gpu() is empty.
+// The same for mesh_patch. Expects a field for whose patch_tables() obstacle_on_gpu() is empty.
 MeshStatistics mesh_patch_on_gpu(const PatchField& field, double size, int resolution, MeshSink& sink,
                                  const Progress& progress = {});
 

@@ -18,11 +18,11 @@ DescriptionOptions for_sampling(DescriptionOptions options, std::uint64_t which)
 }
 
 MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,
-                                      std::uint64_t seed) {
+                                      std::uint64_t seed, const StageProgress& progress) {
   DescriptionOptions options;
   options.seed = seed;
   const auto histogram = [&](const TriangleMesh& mesh, std::uint64_t which) {
-    return describe_evened(mesh, for_sampling(options, which)).histogram;
+    return describe_evened(mesh, for_sampling(options, which), progress).histogram;
   };
   const ShapeHistogram wanted = histogram(target, 0);
   return {similarity(wanted, histogram(candidate, 1)), similarity(wanted, histogram(target, 2))};

@@ -23,8 +23,9 @@ struct MeasuredSimilarity {
   double floor = 0.0;  // of two samplings of the first
 };
 
-// What `compare` states of the same meshes with the same seed and its other defaults.
+// What `compare` states of the same meshes with the same seed and its other defaults. Throws as
+// describe_evened() does.
 MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,
-                                      std::uint64_t seed);
+                                      std::uint64_t seed, const StageProgress& progress = {});
 
 }  // namespace astrolith

@@ -82,7 +82,8 @@ std::string without_quoted(std::string_view line) {
   for (char& c : text) {
     const bool mark = c == '"' && (quoted || at_start);
     if (mark) quoted = !quoted;
-    at_start = !quoted && (kSeparators.find(c) != kSeparators.npos || (at_start && c == ' '));
+    // A quote behind one that closes opens again: it stands for a quote in the text.
+    at_start = !quoted && (mark || kSeparators.find(c) != kSeparators.npos || (at_start && c == ' '));
     if (quoted) c = 'q';
   }
   return text;

@@ -86,7 +86,7 @@ TriangleMesh read_plate(const MeshFile& file) {
   TextScanner scan(file);
   if (!scan.next_filled_line()) scan.fail_truncated("the number of vertices");
   const std::string_view first = scan.word();
-  if (first.find_first_not_of("0123456789") != first.npos || first == "0" || scan.words_left() > 1) {
+  if (first.find_first_not_of("+0123456789") != first.npos || first == "0") {
     // Tables of other kinds come here by their names alone.
     scan.fail("begins with " + astrolith::quoted(first) +
                   ", and is neither a plate model, which begins with a count of vertices, nor a regular grid "

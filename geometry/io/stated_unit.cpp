@@ -70,7 +70,11 @@ std::string unit_in_words(std::string_view comment) {
     if (at == lower.npos || (at > 0 && is_letter(lower[at - 1]))) continue;
     std::string_view rest = std::string_view(lower).substr(at + mark.size());
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t(['\""), rest.size()));
-    if (std::string unit = short_unit(first_letters(rest)); is_of_lengths(unit)) return unit;
+    // Not "m/s", and not "in development".
+    const std::string_view word = first_letters(rest), behind = rest.substr(word.size());
+    if (behind.find_first_of("/^*") == 0) continue;
+    if (word == "in" && behind.size() > 1 && behind[0] == ' ' && is_letter(behind[1])) continue;
+    if (std::string unit = short_unit(word); is_of_lengths(unit)) return unit;
     if (!mark.starts_with("unit") || mark == "units of ") continue;
     if (std::string unit = unknown_unit(std::string_view(lower).substr(0, at), first_letters(rest));
         !unit.empty())

@@ -32,7 +32,7 @@ class ShapeFit:
     """A fitted shape: its recipe, and the figures of ``fit_shape --summary``.
 
     Distances in `figures` are fractions of the diagonal of the target's bounding box: mean_distance, p99_distance,
-    max_distance. similarity is that of the histograms of ``describe``; more than similarity_floor cannot be expected.
+    max_distance. similarity is what ``compare`` states; more than similarity_floor cannot be expected.
     """
 
     recipe: Recipe

@@ -44,7 +44,7 @@ struct FieldLayer {
   LayerNoise noise;
   LayerJoin join;
   std::uint32_t first_list = 0;  // number of the layer's first list of impulses, for spots and Gabor noise
-  std::int32_t in_patch = -1;    // number of the layer's noise in PatchTables; -1: it has none
+  std::int32_t in_patch = -1;    // its noise in PatchTables; -1: it has none in these tables
 };
 
 // Every block has one list of impulses for each kind of spots, and one for each band of Gabor noise.

@@ -122,9 +122,9 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
 // Calls write(impulse) for the Gabor impulses of list number `list` that may reach the block. Impulses that
 // do not reach it may be among them; they add nothing. The frames of impulses follow from the body at the
 // centres of their cells, so `metaballs` must hold the metaballs that reach the cells around the block.
-// A share of them stands for that share of the cells. Frame::kBody leaves out the code for noise in the frame
-// of a patch, for which a GPU needs 148 registers, not 105.
-template <Frame frame = Frame::kPatch, class Write, class Share = AllCells>
+// A share of them stands for that share of the cells. Frame::kBody is for fields of no patch, and takes fewer
+// registers of a GPU.
+template <Frame frame, class Write, class Share = AllCells>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write, const Share& share = {}) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];

@@ -386,7 +386,7 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
   predict_memory(job, o, photo_options(job, o));
   ImageFile photo = o.in_memory ? ImageFile{*o.in_memory, {}}
-                                     : read_image(o.image, o.channels == "pca", job.progress("photo"));
+                                : read_image(o.image, o.channels == "pca", job.progress("photo"));
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   take_stated_scale(job, photo, o);
   const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};

@@ -130,6 +130,15 @@ void add_details(Job& job, const FitArguments& arguments, const TargetBody& targ
                         counted(halved, "height")));
 }
 
+// A fit is no worse for a surface that cannot be sampled evenly, or where a stop comes meanwhile.
+void add_similarity(const Job& job, const TargetBody& target, std::uint64_t seed, ShapeFitResult& fit) try {
+  fit.similarity = measure_similarity(target.surface, fit.check.mesh, seed,
+                                      [&](const std::string& stage) { return job.progress(stage); });
+} catch (const InputError& e) {
+  job.say(std::string("the similarity is not measured: ") + e.what());
+} catch (const WorkError&) {
+}
+
 // What to do about a topology that is not the target's. `base` is the mesh of the metaballs alone, where
 // there are details too.
 std::string remedy_of_topology(const PartsAndHandles& wanted, const TriangleMesh& base) {
@@ -145,13 +154,15 @@ void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& 
                                   ? fmt::format(" (mean {:.4f} % without details)",
                                                 100 * job.summary["base"]["mean_distance"].get<double>())
                                   : "";
-  job.say(
-      fmt::format("{} ({} subtractive){}: mean distance {:.4f} %, p99 {:.4f} %, max {:.4f} % of the "
-                  "diagonal{}; similarity "
-                  "{:.2f} % (two samplings of the target: {:.2f} %)",
-                  counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
-                  with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without,
-                  100 * fit.similarity.value, 100 * fit.similarity.floor));
+  const std::string similarity =
+      fit.similarity ? fmt::format("; similarity {:.2f} % (two samplings of the target: {:.2f} %)",
+                                   100 * fit.similarity->value, 100 * fit.similarity->floor)
+                     : "";
+  job.say(fmt::format(
+      "{} ({} subtractive){}: mean distance {:.4f} %, p99 {:.4f} %, max {:.4f} % of the "
+      "diagonal{}{}",
+      counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
+      with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without, similarity));
   const PartsAndHandles made = parts_and_handles(fit.check.topology), wanted = parts_and_handles(target);
   if (made != wanted) {
     job.say(fmt::format("note: the fit has {}, the target {}; {}", made.words(), wanted.words(),
@@ -348,12 +359,12 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     add_details(job, arguments, target, limit, checkpoint, fit, recipe);
   }
   job.summary["diagonal"] = target.diagonal;  // distances are fractions of it
+  if (!job.stopped()) add_similarity(job, target, arguments.fit.seed, fit);
   if (job.stopped()) {
     keep_best_so_far(job, arguments, checkpoint, fit, recipe);
     return result;
   }
   if (limit.reached()) job.say("stopped at the time limit: this is the best so far");
-  fit.similarity = measure_similarity(target.surface, fit.check.mesh, arguments.fit.seed);
   if (arguments.bytes == 0) note_achieved(fit, recipe);
   if (!arguments.output.empty()) write_loaded_recipe(recipe, arguments.output);
   const std::optional<FitRealism> realism = judge_surface(job, arguments, target, recipe, limit);

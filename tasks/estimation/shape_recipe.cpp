@@ -21,12 +21,14 @@ namespace {
 // Fractions of the bounding-box diagonal, except counts and ratios.
 std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
   const SurfaceDistanceReport& d = fit.check.distance;
-  return {{"max_distance", d.max},
-          {"mean_distance", d.mean},
-          {"p99_distance", d.p99},
-          {"similarity", fit.similarity.value},
-          {"similarity_floor", fit.similarity.floor},
-          {"volume_ratio", fit.check.volume_ratio}};
+  std::vector<std::pair<std::string, double>> figures{
+      {"max_distance", d.max}, {"mean_distance", d.mean}, {"p99_distance", d.p99}};
+  if (fit.similarity) {
+    figures.emplace_back("similarity", fit.similarity->value);
+    figures.emplace_back("similarity_floor", fit.similarity->floor);
+  }
+  figures.emplace_back("volume_ratio", fit.check.volume_ratio);
+  return figures;
 }
 
 nlohmann::ordered_json score_json(const DetailScore& score) {

@@ -1,5 +1,7 @@
 #include "tasks/gravity/gravity_input.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "geometry/mesh_measure.h"
@@ -8,6 +10,7 @@
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/words.h"
 #include "tasks/repair/unit_question.h"
 #include "tasks/synthesis/load_recipe.h"
 
@@ -18,14 +21,17 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file,
   if (!is_recipe_name(file)) {
     const MeshUnit length_unit = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
-    // Edges of four facets, two each way, are no trouble for gravity, but for those of facets that are there
-    // twice.
-    const MeshTopology topology = analyze_topology(mesh);
+    // Edges of four facets, two each way, are no trouble for gravity, once facets that are there twice count
+    // once.
+    TriangleMesh clean = drop_degenerate_and_repeated_faces(mesh);
+    const MeshTopology topology = analyze_topology(clean);
     const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0 &&
-                         !repair.unite && !repair.wrap &&
-                         drop_degenerate_and_repeated_faces(mesh).triangles.size() == mesh.triangles.size();
+                         !repair.unite && !repair.wrap;
     if (touches) {
-      WoundSurface wound = wound_surface(std::move(mesh));
+      if (const std::size_t dropped = mesh.triangles.size() - clean.triangles.size(); dropped > 0)
+        job.say(fmt::format("{}: {} without area or there twice left out", file.string(),
+                            counted(dropped, "facet")));
+      WoundSurface wound = wound_surface(std::move(clean));
       if (wound.changed()) job.say(file.string() + ": " + wound.words());
       mesh = std::move(wound.mesh);
     } else {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "cuda/mesher/backend_mesher.h"
 #include "cuda/mesher/gpu_mesher.h"
+#include "cuda/mesher/mesh_batch.h"
 #include "numerics/errors.h"
 #include "numerics/interval.h"
 #include "synthesis/field/field_mesh.h"
@@ -83,20 +83,16 @@ int emptying_layer(const Recipe& recipe, const std::filesystem::path& file, int 
 // Passes on a mesh whose coordinates lie along the axes of the ground, with coordinates of the body's axes.
 class TurnedMesh : public MeshSink {
  public:
-  TurnedMesh(const GroundAxes& axes, MeshSink& sink) : axes_(axes), sink_(sink) {}
+  TurnedMesh(const PatchPlace& place, MeshSink& sink) : place_(place), sink_(sink) {}
   void add_vertices(std::span<const MeshVertex> vertices) override {
     turned_.assign(vertices.begin(), vertices.end());
-    for (MeshVertex& v : turned_) v = {turned(v.position), turned(v.normal)};
+    for (MeshVertex& v : turned_) v = {place_.along_body(v.position), place_.along_body(v.normal)};
     sink_.add_vertices(turned_);
   }
   void add_triangles(std::span<const Triangle> triangles) override { sink_.add_triangles(triangles); }
 
  private:
-  Vec3f turned(const Vec3f& v) const {
-    return to_float(axes_.to_frame({double{v.x}, double{v.y}, double{v.z}}));
-  }
-
-  GroundAxes axes_;
+  PatchPlace place_;
   MeshSink& sink_;
   std::vector<MeshVertex> turned_;  // kept for its memory
 };
@@ -109,7 +105,7 @@ MeshStatistics mesh_cube(const ImplicitField& field, const Region& region, int r
                                          : mesh_patch(patch, region.size, resolution, to, progress);
   };
   if (!region.axes) return mesh(sink);
-  TurnedMesh turned(*region.axes, sink);
+  TurnedMesh turned(patch.place(), sink);
   return mesh(turned);
 }
 

@@ -52,7 +52,7 @@ std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Regi
 void place_on_ground(const ImplicitField& field, Region& region);
 
 // Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
-// all.
+// all. The field is that of region.cube() where the region is a patch.
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution);
 
 enum class MeshingDevice { kCpu, kGpu };

@@ -10,7 +10,8 @@
 namespace astrolith {
 
 // Measures the similarity with a mesh as `compare` does by default: histograms of the features called ahd, of
-// 10,000 points of evened surfaces. Throws InputError for a mesh without area.
+// 10,000 points of evened surfaces. Throws InputError for a mesh without area, and for one that passes
+// through itself so often that it is no surface.
 SimilarityMeasure similarity_with(const TriangleMesh& mesh);
 
 // "strength 0.31, new noise; 0.84 % of the diagonal from the recipe's own body on average, 2.5 % at most"

@@ -80,8 +80,8 @@ inline void BlockListStore::add(const FieldView& field, const Box& box) {
   }
   const ReachingMetaballs all = all_metaballs(field.body, field.arrays);
   for (std::uint32_t list = 0; list < gabor_lists_; ++list) {
-    gather_gabor(field, list, all.lists(), box,
-                 [&](const GaborImpulse& impulse) { gabor.push_back(impulse); });
+    gather_gabor<Frame::kPatch>(field, list, all.lists(), box,
+                                [&](const GaborImpulse& impulse) { gabor.push_back(impulse); });
     end_list(gabor, first_gabor);
   }
 }

@@ -173,8 +173,10 @@ ImageFile read_image(const std::filesystem::path& file, bool colors, const Progr
   result.scale = raster.scale();
   for (GreyImage& plane : result.planes) {
     plane = upright(std::move(plane), raster.orientation());
-    if (const auto mark = unmark(plane, raster); mark && &plane == &result.planes.front())
-      result.remarks.push_back(*mark);
+    // One mark hides another.
+    while (const auto mark = unmark(plane, raster)) {
+      if (&plane == &result.planes.front()) result.remarks.push_back(*mark);
+    }
     require_usable(plane, raster, file.string());
   }
   join_missing(result.planes);

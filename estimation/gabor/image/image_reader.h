@@ -28,14 +28,14 @@ struct ImageSize {
 inline constexpr double kLargestImagePixels = 67108864.0;
 
 // The functions below read photos (PNG, JPEG, WebP) and rasters (TIFF, GeoTIFF and others: docs/pictures.md),
-// which they tell by their first bytes. Palettes are expanded and the EXIF orientation of a JPEG or TIFF is honoured. Alpha is
-// ignored: the stored colours of transparent pixels count, unless the file says that alpha is multiplied into
-// them, which is undone. If a file has several pages or frames, the first is read. Integers are scaled so
-// that full scale is 1. Floats, signed integers and values with a scale or a unit of their own are as the
-// file states them, heights in metres; heights with a size of pixels are heights above their mean. Pixels
-// without a value are missing (grey_image.h). The size is checked before anything is decoded. The functions
-// throw InputError for a file that is missing, of another kind, damaged or too large, for values beyond 1e9,
-// and where fewer than half of the pixels have a value.
+// which they tell by their first bytes. Palettes are expanded and the EXIF orientation of a JPEG or TIFF is
+// honoured. Alpha is ignored: the stored colours of transparent pixels count, unless the file says that alpha
+// is multiplied into them, which is undone. If a file has several pages or frames, the first is read, but
+// that of a WebP. Integers are scaled so that full scale is 1. Floats, signed integers and values with a
+// scale or a unit of their own are as the file states them, heights in metres; heights with a size of pixels
+// are heights above their mean. Pixels without a value are missing (grey_image.h). The size is checked before
+// anything is decoded. The functions throw InputError for a file that is missing, of another kind, damaged or
+// too large, for values beyond 1e9, and where fewer than half of the pixels have a value.
 
 // Width and height as stored, in pixels, from the header alone.
 ImageSize read_image_size(const std::filesystem::path& file);

@@ -61,6 +61,8 @@ class QuietGdal {
   CPLConfigOptionSetter small_cache_{"GDAL_CACHEMAX", "128", false};  // MB; counts at its first use only
   CPLConfigOptionSetter no_network_{"CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false};
   CPLConfigOptionSetter no_stream_{"CPL_VSIL_CURL_ALLOWED_EXTENSIONS", "", false};
+  // A decoder fills what is missing of a cut JPEG with grey, and only warns.
+  CPLConfigOptionSetter whole_jpeg_{"GDAL_ERROR_ON_LIBJPEG_WARNING", "YES", false};
   CPLConfigOptionSetter one_thread_{"GDAL_NUM_THREADS", "1", false};
 };
 
@@ -337,6 +339,7 @@ void RasterFile::find_scale() {
       scale.height_source = "no unit is stated";
     }
   }
+  if (scale.heights) b.see_through = false;  // what is transparent has no height
   if (scale.heights || scale.pixel_width > 0.0) scale_ = scale;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "descriptor/surface/evened_similarity.h"
@@ -44,16 +45,16 @@ int spheres_for_bytes(int bytes);
 int bytes_for_spheres(int spheres);
 
 struct ShapeFitResult {
-  MetaballBody body;              // in the file's frame and unit
-  FitCheck check;                 // measures the body, in the target's frame
-  TriangleMesh base_mesh;         // of the metaballs alone where `check` measures details too; else empty
-  MeasuredSimilarity similarity;  // of target and fit, where measure_similarity() was called
-  double filling_rate = 0.0;      // the packing's volume over the target's
-  double base_similarity = 0.0;   // the best candidate of the search, on the search's samples
-  int base_spheres = 0;           // the number of spheres that the search chose
-  std::int64_t evaluations = 0;   // of the search's fitness
-  std::vector<double> search_history;         // the least 1 - similarity after each generation
-  std::vector<ConvergencePoint> convergence;  // after every refinement
+  MetaballBody body;       // in the file's frame and unit
+  FitCheck check;          // measures the body, in the target's frame
+  TriangleMesh base_mesh;  // of the metaballs alone where `check` measures details too; else empty
+  std::optional<MeasuredSimilarity> similarity;  // of target and fit, where it was measured
+  double filling_rate = 0.0;                     // the packing's volume over the target's
+  double base_similarity = 0.0;                  // the best candidate of the search, on the search's samples
+  int base_spheres = 0;                          // the number of spheres that the search chose
+  std::int64_t evaluations = 0;                  // of the search's fitness
+  std::vector<double> search_history;            // the least 1 - similarity after each generation
+  std::vector<ConvergencePoint> convergence;     // after every refinement
   // Progress asked to stop: the body is the best so far, and nothing has measured it yet (measure_fit).
   bool interrupted = false;
 };

@@ -143,9 +143,12 @@ PageTable distance_table(const SurfaceDistanceReport& d) {
 }
 
 PageTable likeness_table(const ShapeFitResult& fit) {
+  const auto stated = [&](double MeasuredSimilarity::*figure) {
+    return fit.similarity ? percent((*fit.similarity).*figure) : "not measured";
+  };
   return {{"likeness", ""},
-          {{"similarity of the shape histograms (ahd)", percent(fit.similarity.value)},
-           {"similarity of two samplings of the target", percent(fit.similarity.floor)},
+          {{"similarity of the shape histograms (ahd)", stated(&MeasuredSimilarity::value)},
+           {"similarity of two samplings of the target", stated(&MeasuredSimilarity::floor)},
            {"volume of the fit over that of the target", number(fit.check.volume_ratio, "%.5f")}}};
 }
 

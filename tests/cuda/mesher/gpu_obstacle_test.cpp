@@ -20,6 +20,11 @@ TEST(GpuObstacle, NamesWhatAFieldLacks) {
   const ImplicitField pitted(recipe);
   EXPECT_EQ(obstacle_on_gpu(pitted.tables(), 0.05), "");
   EXPECT_NE(obstacle_on_gpu(pitted.tables(), 2.0), "");
+  FractalLayer warp;  // moves the points at which the spots are evaluated
+  warp.amplitude = 0.5;
+  warp.use.combination.kind = Combine::kWarp;
+  recipe.layers = {warp, fine};
+  EXPECT_NE(obstacle_on_gpu(ImplicitField(recipe).tables(), 0.05), "");
 }
 
 }  // namespace

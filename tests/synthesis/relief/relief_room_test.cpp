@@ -40,9 +40,9 @@ TEST(ReliefRoom, EndsOnTheOtherSideOfABall) {
   const Ground ball{testing::sphere_recipe(1.0), 0.1};
   for (const double height : ball.kept(-0.1)) EXPECT_EQ(height, -0.1);
   for (const double height : ball.kept(0.1)) EXPECT_EQ(height, 0.1);
-  const double least = 1.5 * std::pow((2.0 / 4.5 - 0.3) / 0.7, 2.0);
+  const double most = 1.5 * std::pow((2.0 / 4.5 - 0.3) / 0.7, 2.0);
   for (const double wanted : {-1.5, 1.5}) {
-    for (const double height : ball.kept(wanted)) EXPECT_LE(std::fabs(height), least);
+    for (const double height : ball.kept(wanted)) EXPECT_LE(std::fabs(height), most);
   }
   const std::vector<double> whole = ball.kept(-1.5), half = ball.kept(-0.75, 2.0);
   for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(2.0 * half[i], whole[i], 1e-9);

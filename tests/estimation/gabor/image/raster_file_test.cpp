@@ -250,6 +250,15 @@ TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
   EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata"));
 }
 
+TEST_F(RasterFileTest, OneMarkMayHideAnother) {
+  std::vector<double> values;
+  for (int i = 0; i < 100; ++i) values.push_back(i);
+  values[3] = -9999.0, values[50] = 32767.0;
+  const ImageFile map = read({"GTiff", GDT_Float32, 10, 10}, values, [](GDALDataset& d) { place(d, 1.0); });
+  EXPECT_EQ(map.remarks.size(), 2u);
+  EXPECT_TRUE(map.planes[0].missing[3] && map.planes[0].missing[50]);
+}
+
 TEST_F(RasterFileTest, FormatsOfPlanetsAndOfMapsAreRead) {
   const std::vector<double> heights{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   for (const char* format : {"ISIS3", "PDS4", "VICAR", "ENVI", "FITS", "EHdr", "HFA", "AAIGrid"}) {
