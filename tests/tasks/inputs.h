@@ -78,8 +78,14 @@ inline std::string png_header(std::uint32_t width, std::uint32_t height) {
     return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
                        static_cast<char>(v)};
   };
-  return std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + big_endian(width) + big_endian(height) +
-         std::string("\x08\0\0\0\0", 5) + std::string(16, '\0');
+  const std::string chunk = "IHDR" + big_endian(width) + big_endian(height) + std::string("\x08\0\0\0\0", 5);
+  std::uint32_t sum = ~0u;  // the CRC of the format
+  for (const char c : chunk) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ ((sum & 1u) != 0 ? 0xedb88320u : 0u);
+  }
+  return std::string("\x89PNG\r\n\x1a\n\0\0\0\r", 12) + chunk + big_endian(~sum) +
+         std::string("\0\0\0\x20IDAT", 8) + std::string(16, '\0');
 }
 
 // Smooth noise: the mean of 4 x 4 independent pixels around each.

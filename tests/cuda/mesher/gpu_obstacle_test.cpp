@@ -23,6 +23,7 @@ TEST(GpuObstacle, NamesWhatAFieldLacks) {
   FractalLayer warp;  // moves the points at which the spots are evaluated
   warp.amplitude = 0.5;
   warp.use.combination.kind = Combine::kWarp;
+  warp.use.combination.direction = {1, 1, 1};
   recipe.layers = {warp, fine};
   EXPECT_NE(obstacle_on_gpu(ImplicitField(recipe).tables(), 0.05), "");
 }
