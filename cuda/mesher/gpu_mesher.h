@@ -20,7 +20,8 @@ std::string obstacle_on_gpu(const FieldView& field, double block_side);
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,
                                  MeshSink& sink, const Progress& progress = {}, MeshTile tile = {});
 
-// The same for mesh_patch. Expects a field for whose patch_tables() obstacle_on_gpu() is empty.
+// Does for mesh_patch what mesh_field_on_gpu() does for mesh_field. Expects a field for whose patch_tables()
+// obstacle_on_gpu() is empty.
 MeshStatistics mesh_patch_on_gpu(const PatchField& field, double size, int resolution, MeshSink& sink,
                                  const Progress& progress = {});
 

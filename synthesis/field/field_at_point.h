@@ -29,7 +29,7 @@ enum class Frame { kBody, kPatch };
 struct FieldPoint {
   Vec3f p;           // in the body's frame
   BodyAtPoint body;  // at p
-  // The same relative to the centre of the patch, in Frame::kPatch only: p and body.at.
+  // p and body.at relative to the centre of the patch, in Frame::kPatch only.
   Vec3f local, local_at;
 };
 

@@ -204,7 +204,7 @@ class ImplicitField {
 
   // The field's tables, for evaluation on a GPU. They live as long as the field.
   const FieldView& tables() const;
-  // The same for points relative to the centre of the patch that the field was made for. Throws
+  // Its tables for points relative to the centre of the patch that the field was made for. Throws
   // std::invalid_argument where it was made for none.
   const FieldView& patch_tables() const;
 

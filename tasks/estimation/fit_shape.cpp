@@ -137,6 +137,7 @@ void add_similarity(const Job& job, const TargetBody& target, std::uint64_t seed
 } catch (const InputError& e) {
   job.say(std::string("the similarity is not measured: ") + e.what());
 } catch (const WorkError&) {
+  // Stopped: the caller keeps the best so far.
 }
 
 // What to do about a topology that is not the target's. `base` is the mesh of the metaballs alone, where

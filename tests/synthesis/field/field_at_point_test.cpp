@@ -67,8 +67,8 @@ TEST(FieldAtPoint, HasTheBitsOfTheField) {
   }
 }
 
-// The same for points of patches, for bodies at the origin and for bodies so far from it that float
-// coordinates of their frames hold no fine layer.
+// Expects field_at() to have the bits of a block at points of patches, too, of bodies at the origin and of
+// bodies so far from it that float coordinates of their frames hold no fine layer.
 void expect_same_bits_in_patch(const Recipe& recipe, std::uint64_t seed, double far) {
   Recipe moved = recipe;
   for (Sphere& s : moved.body->spheres) s.center.x += far;
