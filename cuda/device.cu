@@ -30,7 +30,7 @@ __global__ void probe_kernel(Probe* out) {
 }
 
 bool device_agrees_with_host() {
-  DeviceBuffer<Probe> buffer(kProbeSize);
+  DeviceBuffer<Probe> buffer(kProbeSize, nullptr);
   probe_kernel<<<kProbeSize / 128, 128>>>(buffer.data());
   check_cuda(cudaGetLastError(), "launching the probe");
   std::array<Probe, kProbeSize> values{};

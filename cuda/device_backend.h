@@ -3,6 +3,7 @@
 
 #include <cub/device/device_scan.cuh>
 #include <limits>
+#include <memory>
 
 #include "cuda/backend.h"
 #include "cuda/device_buffer.h"
@@ -46,8 +47,15 @@ __global__ void run_groups(Body body) {
   body(DeviceGroup(blockIdx.x, shared));
 }
 
+// A line of work on the GPU that others run beside. It may be moved from one thread to another.
 class DeviceBackend {
  public:
+  DeviceBackend() {
+    cudaStream_t stream = nullptr;
+    check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "starting a line of work");
+    stream_.reset(stream);
+  }
+
   template <typename T>
   using Array = DeviceBuffer<T>;
   template <typename T>
@@ -55,16 +63,16 @@ class DeviceBackend {
 
   template <typename T>
   Array<T> allocate(std::size_t count) {
-    return Array<T>(count);
+    return Array<T>(count, stream_.get());
   }
   template <typename T>
   Array<T> upload(std::span<const T> values) {
-    return Array<T>(values);
+    return Array<T>(values, stream_.get());
   }
   template <typename T>
   void fill_zero(Array<T>& array) {
     if (array.size() == 0) return;
-    check_cuda(cudaMemset(array.data(), 0, array.size() * sizeof(T)), "clearing memory");
+    check_cuda(cudaMemsetAsync(array.data(), 0, array.size() * sizeof(T), stream_.get()), "clearing memory");
   }
   template <typename T>
   void download(const Array<T>& array, std::span<T> values) {
@@ -73,8 +81,7 @@ class DeviceBackend {
   template <typename T>
   T read(const Array<T>& array, std::size_t index) {
     T value;
-    check_cuda(cudaMemcpy(&value, array.data() + index, sizeof(T), cudaMemcpyDeviceToHost),
-               "reading a value from the device");
+    array.download({&value, 1}, index);
     return value;
   }
 
@@ -82,17 +89,18 @@ class DeviceBackend {
   void launch(const char* what, std::size_t threads, const Body& body) {
     constexpr unsigned kThreads = 256;
     if (threads == 0) return;
-    run_threads<<<static_cast<unsigned>((threads + kThreads - 1) / kThreads), kThreads>>>(threads, body);
+    const auto groups = static_cast<unsigned>((threads + kThreads - 1) / kThreads);
+    run_threads<<<groups, kThreads, 0, stream_.get()>>>(threads, body);
     check_cuda(cudaGetLastError(), what);
   }
   template <typename Body>
   void launch_groups(const char* what, std::size_t groups, unsigned threads, const Body& body) {
     if (groups == 0) return;
-    run_groups<<<static_cast<unsigned>(groups), threads>>>(body);
+    run_groups<<<static_cast<unsigned>(groups), threads, 0, stream_.get()>>>(body);
     check_cuda(cudaGetLastError(), what);
   }
   // Waits for all launches to end.
-  void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
+  void wait() { check_cuda(cudaStreamSynchronize(stream_.get()), "waiting for the device"); }
   void running_sum(Array<std::uint32_t>& values) {
     if (values.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw OutOfDeviceMemory("GPU: more than 2^31 counts");
@@ -100,13 +108,19 @@ class DeviceBackend {
     std::size_t bytes = 0;
     const auto sum = [&](void* scratch) {
       check_cuda(cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data(), values.data(),
-                                               static_cast<int>(values.size())),
+                                               static_cast<int>(values.size()), stream_.get()),
                  "adding up counts");
     };
     sum(nullptr);
-    Array<char> scratch(bytes);
+    Array<char> scratch(bytes, stream_.get());
     sum(scratch.data());
   }
+
+ private:
+  struct EndStream {
+    void operator()(cudaStream_t stream) const { cudaStreamDestroy(stream); }
+  };
+  std::unique_ptr<CUstream_st, EndStream> stream_;
 };
 
 }  // namespace astrolith

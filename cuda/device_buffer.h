@@ -45,43 +45,45 @@ template <typename T>
 class DeviceBuffer {
  public:
   DeviceBuffer() = default;
-  explicit DeviceBuffer(std::size_t count) : count_(count) {
+  // All work on the buffer belongs to the stream, which must outlive it.
+  DeviceBuffer(std::size_t count, cudaStream_t stream) : count_(count), stream_(stream) {
     if (count == 0) return;
     void* data = nullptr;
-    check_cuda(has_memory_pool() ? cudaMallocAsync(&data, count * sizeof(T), nullptr)
+    check_cuda(has_memory_pool() ? cudaMallocAsync(&data, count * sizeof(T), stream)
                                  : cudaMalloc(&data, count * sizeof(T)),
                "allocating memory");
     data_ = static_cast<T*>(data);
   }
-  explicit DeviceBuffer(std::span<const T> host) : DeviceBuffer(host.size()) {
+  DeviceBuffer(std::span<const T> host, cudaStream_t stream) : DeviceBuffer(host.size(), stream) {
     if (count_ != 0) {
-      check_cuda(cudaMemcpy(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice),
+      check_cuda(cudaMemcpyAsync(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice, stream),
                  "copying to the device");
     }
   }
-  DeviceBuffer(DeviceBuffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
+  DeviceBuffer(DeviceBuffer&& other) noexcept { *this = std::move(other); }
   DeviceBuffer(const DeviceBuffer&) = delete;
   DeviceBuffer& operator=(const DeviceBuffer&) = delete;
   DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(count_, other.count_);
+    std::swap(stream_, other.stream_);
     return *this;
   }
   ~DeviceBuffer() {
     if (data_ != nullptr && has_memory_pool()) {
-      cudaFreeAsync(data_, nullptr);
+      cudaFreeAsync(data_, stream_);
     } else {
       cudaFree(data_);
     }
   }
 
-  // Copies the first host.size() elements to the host.
-  void download(std::span<T> host) const {
-    if (!host.empty()) {
-      check_cuda(cudaMemcpy(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost),
-                 "copying from the device");
-    }
+  // Copies elements from `first` on to the host, as many as it holds, after all work of the stream.
+  void download(std::span<T> host, std::size_t first = 0) const {
+    if (host.empty()) return;
+    check_cuda(
+        cudaMemcpyAsync(host.data(), data_ + first, host.size_bytes(), cudaMemcpyDeviceToHost, stream_),
+        "copying from the device");
+    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
   }
   T* data() { return data_; }
   const T* data() const { return data_; }
@@ -90,6 +92,7 @@ class DeviceBuffer {
  private:
   T* data_ = nullptr;
   std::size_t count_ = 0;
+  cudaStream_t stream_ = nullptr;
 };
 
 // An array of plain structs on the host that the device copies into at the full rate of the bus. It keeps its

@@ -58,9 +58,9 @@ struct GatherSpots {
   GatherFrom from;
 
   template <typename Writer>
-  ASTROLITH_HD void operator()(std::size_t i, ListShare, Writer& write) const {
+  ASTROLITH_HD void operator()(std::size_t i, ListShare share, Writer& write) const {
     const std::uint32_t lists = from.field.spot_lists.count;
-    gather_spots(from.field, static_cast<std::uint32_t>(i % lists), from.box(i / lists), write);
+    gather_spots(from.field, static_cast<std::uint32_t>(i % lists), from.box(i / lists), write, share);
   }
 };
 
@@ -92,7 +92,8 @@ class GatheredLists {
                                                       GatherMetaballs{from, 0})),
         landforms_(write_lists<std::uint32_t>(backend, "gathering craters and boulders",
                                               count * landform_lists_, GatherLandforms{from})),
-        spots_(write_lists<SpotImpulse>(backend, "gathering spots", count * spot_lists_, GatherSpots{from})),
+        spots_(write_lists<SpotImpulse>(backend, "gathering spots", count * spot_lists_, GatherSpots{from},
+                                        shares_of(count * spot_lists_))),
         gabor_(from.grid.in_patch ? gather_gabor_lists<Frame::kPatch>(backend, from, count)
                                   : gather_gabor_lists<Frame::kBody>(backend, from, count)) {}
 

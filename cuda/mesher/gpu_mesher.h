@@ -10,9 +10,13 @@
 
 namespace astrolith {
 
-// The reason why a field cannot be meshed on a GPU in blocks with sides of `block_side` (length units), in
-// a few words ("masks by more than 16 layers at a time"). Empty if it can.
-std::string obstacle_on_gpu(const FieldView& field, double block_side);
+// The most cells from which the impulses of a block may be drawn, over all Gabor layers or over all layers of
+// spots. Every point of the block adds all these impulses, where the CPU adds those near the point alone.
+inline constexpr double kMostImpulseCells = 1 << 18;
+
+// The reason why a field should not be meshed on a GPU in blocks with sides of `block_side` (length units),
+// in a few words ("masks by more than 16 layers at a time"). Empty where it can be.
+std::string obstacle_on_gpu(const FieldView& field, double block_side, double most_cells = kMostImpulseCells);
 
 // Expects a field of no patch, for which obstacle_on_gpu() is empty. Throws what mesh_field throws, and
 // DeviceError, with CUDA's words, when the device fails or has too little memory for one layer of blocks.

@@ -8,15 +8,6 @@
 namespace astrolith {
 namespace {
 
-// The most cells from which the impulses of a block may be drawn, over all Gabor layers or over all layers of
-// spots. Every point of the block adds all these impulses.
-constexpr double kMostCells = 32768.0;
-
-double longest_side(const Box& box) {
-  const Vec3d extent = box.extent();
-  return std::max({extent.x, extent.y, extent.z});
-}
-
 // Visits the noise of layer after layer: adds up the cells that the impulses of a block are drawn from, in
 // the boxes that gather_gabor() and gather_spots() take. The block lies where coordinates are large, and with
 // them what is added for their rounding.
@@ -30,10 +21,10 @@ struct ImpulseCells {
   void operator()(const Noise& noise) const {
     constexpr NoiseLists kLists = Noise::kTraits.lists;
     if constexpr (kLists == NoiseLists::kGabor) {
-      of_gabor += cells_of(noise, field.arrays, longest_side(projected_block(field, block)));
+      of_gabor += cells_of(noise, field.arrays, projected_block(field, block).longest_side());
     } else if constexpr (kLists == NoiseLists::kSpots) {
       of_spots +=
-          cells_of(noise, field.arrays, longest_side(displaced_layer_box(block, layer->join.displaced)));
+          cells_of(noise, field.arrays, displaced_layer_box(block, layer->join.displaced).longest_side());
     } else {
       static_assert(kLists == NoiseLists::kNone || kLists == NoiseLists::kCraters);
     }
@@ -42,7 +33,7 @@ struct ImpulseCells {
 
 }  // namespace
 
-std::string obstacle_on_gpu(const FieldView& field, double block_side) {
+std::string obstacle_on_gpu(const FieldView& field, double block_side, double most_cells) {
   if (field.num_kept_heights > kMostKeptHeights) return "masks by more than 16 layers at a time";
   const Vec3d& far = field.body.supports.max;
   ImpulseCells cells{field, {far - Vec3d{block_side, block_side, block_side}, far}};
@@ -50,8 +41,8 @@ std::string obstacle_on_gpu(const FieldView& field, double block_side) {
     cells.layer = &layer;
     field.noise(layer).visit(cells);
   }
-  if (cells.of_spots > kMostCells) return "spots so much smaller than the mesh's cells";
-  return cells.of_gabor > kMostCells ? "Gabor kernels so much smaller than the mesh's cells" : "";
+  if (cells.of_spots > most_cells) return "spots so much smaller than the mesh's cells";
+  return cells.of_gabor > most_cells ? "Gabor kernels so much smaller than the mesh's cells" : "";
 }
 
 }  // namespace astrolith

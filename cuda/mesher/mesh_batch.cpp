@@ -62,10 +62,7 @@ MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution) {
   return {{samples, window_of_patch(samples), false}, true, place};
 }
 
-double block_side(const MeshGrid& grid) {
-  const Vec3d extent = grid.box_in_body(0, 0, 0, 1).extent();
-  return std::max({extent.x, extent.y, extent.z});
-}
+double block_side(const MeshGrid& grid) { return grid.box_in_body(0, 0, 0, 1).longest_side(); }
 
 std::vector<BlockPlace> place_blocks(const MeshGrid& grid, int first_z,
                                      std::span<const std::vector<BlockColumn>> layers,

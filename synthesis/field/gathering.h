@@ -34,15 +34,17 @@ ASTROLITH_HD inline bool boulder_reaches(const FieldView& f, std::uint32_t numbe
   return boxes_touch(f.arrays[f.boulders][number].box, box);
 }
 
-// Calls write(impulse) for every spot of list number `list` that reaches the block.
-template <class Write>
-ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box& box, Write&& write) {
+// Calls write(impulse) for every spot of list number `list` that reaches the block, or for a share of them
+// (for_each_spot).
+template <class Write, class Share = AllCells>
+ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box& box, Write&& write,
+                               const Share& share = {}) {
   const ImpulseList from = f.arrays[f.spot_lists][list];
   const FieldLayer& layer = f.layers[from.layer];
   const SpotNoise& noise = *f.noise(layer).get_if<SpotNoise>();
   const Box where = displaced_layer_box(f.in_frame_of(layer, box), layer.join.displaced);
   for_each_spot(f.arrays[noise.kinds][from.element], f.arrays[noise.thresholds],
-                moved_into(where, noise.low, noise.high), write);
+                moved_into(where, noise.low, noise.high), write, share);
 }
 
 // A box of floats by its corners, its centre and half its sides, along the three axes.
@@ -69,12 +71,6 @@ ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least,
   set(2, box.min.z, box.max.z, least.z, most.z);
   return out;
 }
-
-// All cells of a band around a box.
-struct AllCells {
-  ASTROLITH_HD std::uint64_t begin(std::uint64_t) const { return 0; }
-  ASTROLITH_HD std::uint64_t end(std::uint64_t cells) const { return cells; }
-};
 
 // Visits the cells of a band whose impulses may reach a box, or a share of them: cells share.begin(n) to
 // share.end(n) - 1 of n. Cells come brick by brick, because the CPU keeps impulses in bricks

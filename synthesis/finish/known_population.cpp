@@ -261,8 +261,7 @@ Finish finish_recipe(const Recipe& recipe, const std::string& name, const Finish
                     "raise the start",
                     name, finish.from, request.from ? "" : ", the finest of the recipe,", finish.to));
   }
-  const Vec3d extent = bare_body(recipe).bounds.extent();
-  Finishing finishing(finish, meters, std::max({extent.x, extent.y, extent.z}));
+  Finishing finishing(finish, meters, bare_body(recipe).bounds.longest_side());
   for (const KnownLandforms& known : body.landforms) finishing.add(known);
   if (finish.layers.empty()) {
     throw InputError(fmt::format("{}: finish: {} has no landforms between these sizes, {:.4g} and {:.4g}",

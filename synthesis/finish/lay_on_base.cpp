@@ -17,8 +17,7 @@ double longest_side(const Recipe& recipe, const std::string& name) {
   if (mesh.vertices.empty()) throw InputError(name + ": body: is empty; give one with a surface");
   Box box;
   for (const Vec3d& v : mesh.vertices) box.extend(v);
-  const Vec3d extent = box.extent();
-  return std::max({extent.x, extent.y, extent.z});
+  return box.longest_side();
 }
 
 // The length of one unit of the details in units of the base.

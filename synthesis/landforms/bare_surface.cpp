@@ -16,10 +16,7 @@ constexpr int kRaySamples = 1024;  // samples along a ray, to find its last cros
 
 }  // namespace
 
-double BareSurface::longest_side() const {
-  const Vec3d e = body_.bounds.extent();
-  return std::max({e.x, e.y, e.z});
-}
+double BareSurface::longest_side() const { return body_.bounds.longest_side(); }
 
 Vec3d BareSurface::nearer(const Vec3d& p) const {
   const Vec3d g = body_.gradient(p);

@@ -31,8 +31,7 @@ void check_resolution(int resolution) {
 
 SampleGrid make_sample_grid(const Box& bounds, int resolution) {
   check_resolution(resolution);
-  const Vec3d extent = bounds.extent();
-  const double longest = std::max({extent.x, extent.y, extent.z});
+  const double longest = bounds.longest_side();
   if (bounds.empty() || !(longest > 0.0) || !std::isfinite(longest)) {
     throw InputError("bounds: the body has no extent to sample; check its spheres");
   }
@@ -42,6 +41,7 @@ SampleGrid make_sample_grid(const Box& bounds, int resolution) {
   const auto cells_along = [&](double length) {
     return std::clamp(static_cast<int>(std::ceil(length / grid.step - 1e-6)), 1, resolution - 2) + 2;
   };
+  const Vec3d extent = bounds.extent();
   grid.cells = {cells_along(extent.x), cells_along(extent.y), cells_along(extent.z)};
   grid.origin = bounds.center() -
                 0.5 * grid.step * Vec3d{double(grid.cells[0]), double(grid.cells[1]), double(grid.cells[2])};

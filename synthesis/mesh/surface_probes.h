@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
-#include "numerics/one_thread.h"
+#include "numerics/own_loops.h"
 #include "numerics/processor_clock.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/mesh/probed_surface.h"

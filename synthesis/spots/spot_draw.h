@@ -1,11 +1,13 @@
 // Draws the impulses of one kind of spots that reach a box, cell by cell, on CPU and GPU.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
+#include "synthesis/noise/cell_share.h"
 #include "synthesis/spots/spot_kernel.h"
 
 namespace astrolith {
@@ -100,10 +102,11 @@ ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::u
 }
 
 // Calls visit(impulse) for the impulses whose spots may reach points of the box, with the offset added. The
-// order is that of their cells (z, then y, then x).
-template <typename Visit>
+// order is that of their cells (z, then y, then x). A share of them stands for that share of the rows of
+// cells along x.
+template <typename Visit, class Share = AllCells>
 ASTROLITH_HD void for_each_spot(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box,
-                                Visit&& visit) {
+                                Visit&& visit, const Share& share = {}) {
   const Box wide = spot_box(box);
   const SpotCells cells = spot_cells_around(kind, wide);
   const Vec3f offset = to_float(kind.offset);
@@ -113,11 +116,15 @@ ASTROLITH_HD void for_each_spot(const SpotKind& kind, const std::uint32_t* thres
     impulse.z += offset.z;
     if (spot_reaches(impulse, kind.support, wide)) visit(impulse);
   };
-  for (int c = cells.first[2]; c <= cells.last[2]; ++c) {
-    for (int b = cells.first[1]; b <= cells.last[1]; ++b) {
-      for (int a = cells.first[0]; a <= cells.last[0]; ++a) {
-        for_each_spot_of_cell(kind.lattice, thresholds, a, b, c, keep);
-      }
+  const auto length = [&](int axis) {
+    return static_cast<std::uint64_t>(std::max(cells.last[axis] - cells.first[axis] + 1, 0));
+  };
+  const std::uint64_t rows = length(1) * length(2), end = share.end(rows);
+  for (std::uint64_t row = share.begin(rows); row < end; ++row) {
+    const int b = cells.first[1] + static_cast<int>(row % length(1));
+    const int c = cells.first[2] + static_cast<int>(row / length(1));
+    for (int a = cells.first[0]; a <= cells.last[0]; ++a) {
+      for_each_spot_of_cell(kind.lattice, thresholds, a, b, c, keep);
     }
   }
 }

@@ -83,8 +83,7 @@ void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeF
                     ShapeFitResult& fit) {
   // A mesh with longer edges than the target's would lack what the heights of a relief hold of it.
   constexpr double kMostCells = 2048.0;
-  const Vec3d extent = target.surface.bounds().extent();
-  const double cells = std::max({extent.x, extent.y, extent.z}) / mean_edge(target.surface);
+  const double cells = target.surface.bounds().longest_side() / mean_edge(target.surface);
   const bool has_relief = std::any_of(recipe.layers.begin(), recipe.layers.end(), [](const Layer& layer) {
     return std::holds_alternative<ReliefLayer>(layer);
   });

@@ -6,7 +6,8 @@
 
 namespace astrolith {
 
-Job::Job(std::string name) : name_(std::move(name)) {
+Job::Job(std::string name)
+    : own_options_(std::make_unique<OptionTable>()), options(*own_options_), name_(std::move(name)) {
   options
       .add_option("--seed", seed,
                   "seed of everything random; same input, options and seed give the same bytes")

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "numerics/progress.h"
 #include "tasks/job/option_table.h"
@@ -18,9 +20,13 @@ namespace astrolith {
 using JobWork = std::function<void()>;
 
 class Job {
+  std::unique_ptr<OptionTable> own_options_;  // none where the job is a part of another
+
  public:
   // Declares --seed, which all jobs take.
   explicit Job(std::string name);
+  Job(const Job&) = delete;
+  Job& operator=(const Job&) = delete;
   virtual ~Job() = default;
 
   // The callback of a stage of the work. It returns false once the caller asks the work to stop.
@@ -51,17 +57,41 @@ class Job {
   // "fit_shape 0.2.0 (1a2b3c4)", for provenance.
   std::string tool() const;
 
-  OptionTable options;
+  OptionTable& options;
   nlohmann::ordered_json summary;
   std::uint64_t seed = 1;
   bool quiet = false;  // the job tells nothing but failures
 
  protected:
-  Job(const Job&) = delete;
-  Job& operator=(const Job&) = delete;
+  struct Whole {
+    Job& job;
+  };
+  // A part of a job: it has the options, the seed and the clock of the whole.
+  explicit Job(Whole whole)
+      : options(whole.job.options), seed(whole.job.seed), name_(whole.job.name_), start_(whole.job.start_) {}
 
   std::string name_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// A part of a job with a summary of its own, which tells nothing but failures. Parts may work beside each
+// other.
+class JobPart : public Job {
+ public:
+  explicit JobPart(Job& whole) : Job(Whole{whole}), whole_(whole) { quiet = true; }
+
+  Progress progress(std::string) const override {
+    return [this](double, std::string_view) { return !stopped(); };
+  }
+  bool stopped() const override { return whole_.stopped(); }
+  const char* stopped_by() const override { return whole_.stopped_by(); }
+  void say(const std::string&) const override {}
+  void note(const std::string&) override {}
+  void print_result(const std::string&) override {}
+  void report_failure(const std::string& line) override { whole_.report_failure(line); }
+
+ private:
+  Job& whole_;
 };
 
 }  // namespace astrolith

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "numerics/one_thread.h"
+#include "numerics/portable_double.h"
+#include "numerics/processor_clock.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 
@@ -55,10 +56,21 @@ void set_layers(const ProbedSurface& surface, const SampleGrid& grid, MeshEstima
   estimate.blocks_of_layer = std::min(estimate.blocks * surface.largest_share(side), places);
 }
 
+// What a mesh of nearly as many cells tells of one of this resolution.
+MeshEstimate scaled(MeshEstimate counted, int resolution, double step) {
+  const double ratio = counted.step / step;
+  counted.resolution = resolution;
+  counted.step = step;
+  for (double* of_area : {&counted.triangles, &counted.blocks, &counted.seconds}) *of_area *= ratio * ratio;
+  counted.blocks_of_layer *= ratio;
+  return counted;
+}
+
 }  // namespace
 
-MeshEstimator::MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region)
-    : field_(field), region_(region), base_(base_of(field, recipe)) {}
+MeshEstimator::MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                             MeshingDevice device)
+    : field_(field), region_(region), device_(device), base_(base_of(field, recipe)) {}
 
 void MeshEstimator::make_coarse(int cells) {
   if (cells <= coarse_cells_) return;
@@ -101,25 +113,25 @@ ProbeFigures MeshEstimator::probe_or_known(const ProbedSurface& surface, int res
 
 MeshEstimate MeshEstimator::made_at(int resolution) {
   MeshCollector collector;
-  MeshStatistics made;
-  double seconds = 0.0;
-  on_one_thread([&] {
-    const ProcessorClock clock;
-    made = mesh_region(field_, region_, resolution, collector, {});
-    seconds = clock.seconds();
-  });
+  const double start = processor_seconds();
+  const bool on_gpu = device_ == MeshingDevice::kGpu && lacking_on_gpu(field_, region_, resolution).empty();
+  const MeshStatistics made = mesh_region(field_, region_, resolution, collector, {},
+                                          on_gpu ? MeshingDevice::kGpu : MeshingDevice::kCpu);
+  evaluations_ += double(made.evaluations);
   coarse_ = std::move(collector.mesh);
   coarse_cells_ = 0;  // the next estimate makes another one
   const ProbedSurface surface(coarse_, kEverywhere);
   MeshEstimate estimate{resolution, made.step, surface.area(), double(made.triangles),
                         double(made.active_blocks)};
-  estimate.seconds = seconds;
-  estimate.own_evaluations = evaluations_ + double(made.evaluations);
+  estimate.seconds = processor_seconds() - start;
+  estimate.own_evaluations = evaluations_;
   set_layers(surface, grid_of(field_, region_, resolution), estimate);
   return estimate;
 }
 
 MeshEstimate MeshEstimator::at(int resolution) {
+  if (counted_.triangles > 0.0)
+    return scaled(counted_, resolution, grid_of(field_, region_, resolution).step);
   if (resolution <= kSmall) return made_at(resolution);
   // Coarse cells of eight cells, and one probe for 6,400 cells of a side of the body's box: together these
   // take some 3 % of the mesh.
@@ -147,10 +159,20 @@ MeshEstimate MeshEstimator::at(int resolution) {
 
 namespace {
 
-// The resolution that has so many triangles, where `resolution` has `found`.
-int nearer_resolution(int resolution, double found, double triangles) {
-  const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
+// The resolution that has so many triangles, where `resolution` has `found`, and their number grows with this
+// power of the cells.
+int nearer_resolution(int resolution, double found, double triangles, double power = 2.0) {
+  const double better = 2.0 + (resolution - 2) * portable::exp(portable::log(triangles / found) / power);
   return static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
+}
+
+// The power of the cells with which the number of triangles grew from one mesh to another. Small meshes say
+// little, so that it is held to those of a plane and of the roughest noise.
+double power_of_growth(const MeshEstimate& from, const MeshEstimate& to) {
+  constexpr double kPlane = 2.0, kRoughest = 2.6;
+  if (from.resolution == to.resolution || !(from.triangles > 0.0)) return kPlane;
+  const double cells = (to.resolution - 2.0) / (from.resolution - 2.0);
+  return std::clamp(portable::log(to.triangles / from.triangles) / portable::log(cells), kPlane, kRoughest);
 }
 
 [[noreturn]] void fail_as_too_small() {
@@ -159,21 +181,23 @@ int nearer_resolution(int resolution, double found, double triangles) {
 
 }  // namespace
 
-int MeshEstimator::counted_resolution(int resolution, double triangles) {
+int MeshEstimator::counted_resolution(MeshEstimate before, int resolution, double triangles) {
   constexpr int kMostCounts = 4;
-  for (int k = 0; k < kMostCounts; ++k) {
-    const double found = made_at(resolution).triangles;
-    if (!(found > 0.0)) fail_as_too_small();
-    const int next = nearer_resolution(resolution, found, triangles);
-    if (next == resolution) break;
-    resolution = next;
+  constexpr double kSure = 0.15;  // share of the triangles that the law of growth adds or takes surely enough
+  for (int k = 0; k < kMostCounts && resolution != before.resolution; ++k) {
+    counted_ = made_at(resolution);
+    if (!(counted_.triangles > 0.0)) fail_as_too_small();
+    resolution =
+        nearer_resolution(resolution, counted_.triangles, triangles, power_of_growth(before, counted_));
+    if (std::fabs(counted_.triangles / triangles - 1.0) < kSure) break;
+    before = counted_;
   }
   return resolution;
 }
 
 int MeshEstimator::resolution_for(double triangles) {
   constexpr int kCells = 64, kTriedProbes = 24, kProbes = 96;
-  constexpr int kMostCounted = 32;  // cells of meshes that are counted sooner than probed
+  constexpr int kMostCounted = 160;  // cells of meshes that are counted sooner than probed
   // A plane in a lattice has this many triangles on a square of the lattice's edge, in the mean over all
   // directions.
   constexpr double kOfSquare = 3.0;
@@ -183,7 +207,8 @@ int MeshEstimator::resolution_for(double triangles) {
   const double step = grid_of(field_, region_, kCells).step;
   double found = surface.area() * kOfSquare / (step * step);
   int resolution = nearer_resolution(kCells, found, triangles);
-  if (resolution <= kMostCounted && region_.tile.count == 1) return counted_resolution(resolution, triangles);
+  if (resolution <= kMostCounted && region_.tile.count == 1)
+    return counted_resolution({kCells, step, surface.area(), found}, resolution, triangles);
   for (const int probes : {kTriedProbes, kProbes}) {
     found = surface.area() * probe(surface, resolution, probes).triangles;
     if (!(found > 0.0)) fail_as_too_small();

@@ -25,7 +25,9 @@ struct MeshEstimate {
 // and the recipe must outlive it. All members throw what mesh_region throws.
 class MeshEstimator {
  public:
-  MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region);
+  // Meshes that are made to be counted are made by the device, where it can.
+  MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                MeshingDevice device = MeshingDevice::kCpu);
 
   MeshEstimate at(int resolution);
 
@@ -34,14 +36,15 @@ class MeshEstimator {
   // to tell its size.
   int resolution_for(double triangles);
 
-  // The coarse mesh of the last estimate, which stands for the surface where a cost is sampled. Where layers
-  // have impulses it is the mesh of the body without its layers.
+  // The coarse or counted mesh of the last estimate, which stands for the surface where a cost is sampled.
+  // Where layers have impulses it is the mesh of the body without its layers.
   const TriangleMesh& coarse() const { return coarse_; }
 
  private:
   MeshEstimate made_at(int resolution);
-  // The resolution near this one whose mesh has about so many triangles, by making meshes.
-  int counted_resolution(int resolution, double triangles);
+  // The resolution near this one whose mesh has about so many triangles, by making meshes. `before` is known
+  // of a mesh of other cells.
+  int counted_resolution(MeshEstimate before, int resolution, double triangles);
   void make_coarse(int cells);
   double step_at(int resolution) const;
   ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
@@ -49,10 +52,12 @@ class MeshEstimator {
 
   const ImplicitField& field_;
   Region region_;
+  MeshingDevice device_;
   ImplicitField base_;  // whose coarse mesh is made
   TriangleMesh coarse_;
   int coarse_cells_ = 0;
   double coarse_step_ = 0.0;
+  MeshEstimate counted_;  // the last mesh that was made to count its triangles; 0 triangles: none
   double evaluations_ = 0.0;
   int most_probes_ = 0;
   // The last probes, which stand for those of nearly the same cells.

@@ -12,7 +12,7 @@
 #include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
-#include "numerics/one_thread.h"
+#include "numerics/own_loops.h"
 #include "numerics/portable_double.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
@@ -176,7 +176,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
                             const PlannedRun& run) {
   const double start = processor_seconds();
   const double peak_before = static_cast<double>(peak_bytes());
-  MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region);
+  MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region, mesh.device);
   const MeshEstimate estimate =
       estimator.at(triangles > 0.0 ? estimator.resolution_for(triangles) : resolution);
   const BrickCost bricks = cost_of_bricks(mesh.field, estimate, threads_of(run));

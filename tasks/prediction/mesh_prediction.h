@@ -29,6 +29,7 @@ struct PlannedMesh {
   Region region;
   std::filesystem::path output;  // its extension tells the format
   MeshUse use;
+  MeshingDevice device = MeshingDevice::kCpu;  // that counts small meshes
 };
 
 // The run that will make the mesh.

@@ -19,9 +19,8 @@ class Silhouette {
  public:
   Silhouette(const TriangleMesh& mesh, const Box& frame, std::size_t axis)
       : axis_(axis), covered_(std::size_t{kPixels} * kPixels, 0) {
-    const Vec3d extent = frame.extent();
     corner_ = frame.min;
-    pixel_ = std::max({extent.x, extent.y, extent.z}) / kPixels;
+    pixel_ = frame.longest_side() / kPixels;
     for (const Triangle& t : mesh.triangles)
       cover(place(mesh.vertices[t[0]]), place(mesh.vertices[t[1]]), place(mesh.vertices[t[2]]));
   }

@@ -263,24 +263,24 @@ void synthesize(Job& job, const SynthOptions& options) {
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
   const BodyRequest& body = options.body;
   const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
-  const auto variation = [&](const Recipe& of, std::uint64_t seed) {
-    return finished(job, options.finish, varied(job, options, of, seed), file.string(), patch_side);
+  const auto variation = [&](Job& part, const Recipe& of, std::uint64_t seed) {
+    return finished(part, options.finish, varied(part, options, of, seed), file.string(), patch_side);
   };
   const bool is_varied = options.vary > 0.0;
   const Recipe whole = is_varied ? recipe : finished(job, options.finish, recipe, file.string(), patch_side);
   if (!options.members.range.empty()) {
     check_members_of(job, recipe);
-    const auto draw = [&](std::uint64_t number) {
+    const auto draw = [&](Job& part, std::uint64_t number) {
       if (!is_varied) return family_member(whole, number);
-      if (!recipe.family) return FamilyMember{variation(recipe, number), {}, {}, {}};
+      if (!recipe.family) return FamilyMember{variation(part, recipe, number), {}, {}, {}};
       FamilyMember member = family_member(recipe, number);
-      member.recipe = variation(member.recipe, number);
+      member.recipe = variation(part, member.recipe, number);
       return member;
     };
     const auto work = body.mesh.size.only_predict ? predict_members : make_members;
     return work(job, options.members, body, {whole, file, draw});
   }
-  const Recipe made = is_varied ? variation(recipe, job.seed) : whole;
+  const Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
   if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
   if (!options.page.empty()) write_page(made, options.recipe, options.page);
   if (body.output.empty() && !body.mesh.size.only_predict) return;

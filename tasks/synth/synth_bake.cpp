@@ -53,8 +53,7 @@ class Occluder {
   Occluder(Job& job, const BodyMeshJob& finest, double texel) {
     constexpr int kMostCells = 640;
     constexpr double kTexelsPerCell = 4.0;
-    const Vec3d extent = finest.field.bounds().extent();
-    const double longest = std::max({extent.x, extent.y, extent.z});
+    const double longest = finest.field.bounds().longest_side();
     BodyMeshJob work = finest;
     work.resolution =
         std::clamp(static_cast<int>(longest / (kTexelsPerCell * texel)), kMinResolution, kMostCells);

@@ -7,8 +7,10 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <new>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "geometry/io/mesh_format.h"
@@ -16,6 +18,9 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
+#include "numerics/own_loops.h"
+#include "numerics/parallel_for.h"
 #include "numerics/processor_clock.h"
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
@@ -118,24 +123,6 @@ std::string hash_of_family(const Job& job, const Recipe& recipe) {
   return sha256_of(text);
 }
 
-// While it lives, the job says nothing and fills another summary.
-class SilencedJob {
- public:
-  explicit SilencedJob(Job& job)
-      : job_(job), quiet_(std::exchange(job.quiet, true)), summary_(std::exchange(job.summary, {})) {}
-  SilencedJob(const SilencedJob&) = delete;
-  SilencedJob& operator=(const SilencedJob&) = delete;
-  ~SilencedJob() {
-    job_.quiet = quiet_;
-    job_.summary = std::move(summary_);
-  }
-
- private:
-  Job& job_;
-  bool quiet_;
-  Json summary_;
-};
-
 class MemberMaker {
  public:
   MemberMaker(Job& job, const MembersRequest& request, const BodyRequest& body, const MemberSource& source)
@@ -167,39 +154,45 @@ class MemberMaker {
     return manifest_.has(member, family_, names_of(numbered(body_, member)));
   }
 
-  void make(std::uint64_t number) const {
+  // Makes a member's files. Returns its line of the manifest.
+  Json make(std::uint64_t number) const {
     make_folders(number);
     const auto start = std::chrono::steady_clock::now();
     BodyRequest body = numbered(body_, number);
-    const SilencedJob silenced(job_);
-    const FamilyMember member = source_.draw(number);
+    JobPart job(job_);
+    const FamilyMember member = source_.draw(job, number);
     Json line = {
         {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
     for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
     if (const auto& family = source_.recipe.family; family && !body.mesh.preview.file.empty()) {
       PictureOptions& look = body.mesh.preview.look;
-      if (family->any_view && !look.chooses_view(job_)) {
+      if (family->any_view && !look.chooses_view(job)) {
         look.look_from(member.view);
         line["view"] = json_of(member.view);
       }
-      if (family->any_sun && !look.chooses_sun(job_)) {
+      if (family->any_sun && !look.chooses_sun(job)) {
         look.light_from(member.sun);
         line["sun"] = json_of(member.sun);
       }
     }
-    if (!body.output.empty()) make_mesh(job_, body.mesh, member.recipe, source_.file, body.output);
+    if (!body.output.empty()) make_mesh(job, body.mesh, member.recipe, source_.file, body.output);
     for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
                                "closed", "manifold", "genus", "components"}) {
-      if (job_.summary.contains(figure)) line[figure] = job_.summary[figure];
+      if (job.summary.contains(figure)) line[figure] = job.summary[figure];
     }
     if (!body.recipe.empty()) write_loaded_recipe(member.recipe, body.recipe);
-    if (file_.empty()) return;
+    if (file_.empty()) return line;
     std::vector<ManifestFile> written;
     for (const fs::path& name : names_of(body)) written.push_back(manifest_.file_of(name));
     line["files"] = to_json(written);
     line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    manifest_.append(line);
+    return line;
+  }
+
+  // Adds the line of a member to the manifest; null where none was made.
+  void keep(const Json& line) const {
+    if (!file_.empty() && !line.is_null()) manifest_.append(line);
   }
 
   void make_folders(std::uint64_t number) const {
@@ -226,40 +219,81 @@ struct Tally {
   std::uint64_t made = 0, there = 0, failed = 0;
 };
 
-// Makes one member. False where it failed, which has been said then.
-bool make_or_report(Job& job, const MemberMaker& maker, std::uint64_t number) {
-  std::string reason;
-  try {
-    maker.make(number);
-    return true;
-  } catch (const std::bad_alloc&) {
-    reason = "out of memory; try a smaller resolution";
-  } catch (const std::exception& e) {
-    reason = e.what();
-  }
-  if (!job.stopped()) job.report_failure(fmt::format("member {}: {}", number, reason));
-  return false;
-}
+// Makes the members of a range, some beside each other. Their lines reach the manifest in the order of their
+// numbers.
+class RangeMaker {
+ public:
+  RangeMaker(Job& job, const MemberMaker& maker, const MemberRange& range)
+      : job_(job), maker_(maker), range_(range), next_(range.begin), awaited_(range.begin) {}
 
-// The manifest tells files that a power cut damaged, so that members need not wait for the disk one by one.
-Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range) {
-  const UnsyncedOutputs unsynced;
-  const Progress progress = job.progress("members");
-  Tally tally;
-  for (std::uint64_t number = range.begin; number < range.end; ++number) {
-    const double share =
-        static_cast<double>(number - range.begin) / static_cast<double>(range.end - range.begin);
-    if (!progress(share, fmt::format("member {}", number))) break;
-    if (maker.is_finished(number)) {
-      ++tally.there;
-    } else if (make_or_report(job, maker, number)) {
-      ++tally.made;
-    } else if (!job.stopped()) {
-      ++tally.failed;
-    }
+  Tally make(int beside_each_other) {
+    // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by
+    // one.
+    const UnsyncedOutputs unsynced;
+    parallel_for(0, beside_each_other, [&](std::int64_t) {
+      while (const std::optional<std::uint64_t> number = next())
+        within_own_loops([&] { make_or_report(*number); });
+    });
+    for (const auto& [number, line] : waiting_) maker_.keep(line);  // after a stop
+    if (!job_.stopped()) progress_(1.0, "");
+    return tally_;
   }
-  if (!job.stopped()) progress(1.0, "");
-  return tally;
+
+ private:
+  // The next member to be made; none at the end, or after a stop.
+  std::optional<std::uint64_t> next() {
+    const std::lock_guard lock(mutex_);
+    if (next_ == range_.end) return {};
+    const double share =
+        static_cast<double>(next_ - range_.begin) / static_cast<double>(range_.end - range_.begin);
+    if (!progress_(share, fmt::format("member {}", next_))) return {};
+    return next_++;
+  }
+
+  void make_or_report(std::uint64_t number) {
+    std::string reason;
+    try {
+      if (maker_.is_finished(number)) return end(number, tally_.there);
+      const Json line = maker_.make(number);
+      return end(number, tally_.made, line);
+    } catch (const std::bad_alloc&) {
+      reason = "out of memory; try a smaller resolution";
+    } catch (const std::exception& e) {
+      reason = e.what();
+    }
+    if (job_.stopped()) return;
+    end(number, tally_.failed);
+    const std::lock_guard lock(mutex_);
+    job_.report_failure(fmt::format("member {}: {}", number, reason));
+  }
+
+  // Counts a member, and writes the lines that no member before them is missing for.
+  void end(std::uint64_t number, std::uint64_t& count, const Json& line = {}) {
+    const std::lock_guard lock(mutex_);
+    waiting_[number] = line;
+    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == awaited_; ++awaited_) {
+      maker_.keep(first->second);
+      first = waiting_.erase(first);
+    }
+    ++count;
+  }
+
+  Job& job_;
+  const MemberMaker& maker_;
+  MemberRange range_;
+  std::mutex mutex_;
+  Progress progress_ = job_.progress("members");
+  std::uint64_t next_, awaited_;
+  std::map<std::uint64_t, Json> waiting_;  // lines of members that ended before an earlier one
+  Tally tally_;
+};
+
+// How many members are made at once. A small mesh leaves threads idle, a large one needs memory.
+int members_at_once(const MeshSizeRequest& size) {
+  constexpr double kMostTriangles = 1e6;
+  constexpr int kMostCells = 320;
+  const bool small = size.triangles > 0.0 ? size.triangles <= kMostTriangles : size.resolution <= kMostCells;
+  return small && !(size.max_memory_gb > 0.0) ? thread_limit() : 1;
 }
 
 // The first member, the last and some between.
@@ -380,7 +414,7 @@ void make_members(Job& job, const MembersRequest& request, const BodyRequest& bo
     job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
                         counted(static_cast<std::size_t>(unreadable), "line")));
   }
-  const Tally tally = make_range(job, maker, range);
+  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(body.mesh.size));
   for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
   job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
@@ -400,19 +434,20 @@ void predict_members(Job& job, const MembersRequest& request, const BodyRequest&
   const std::vector<std::uint64_t> numbers = sampled_members(range, 2);
   const std::uint64_t members = range.end - range.begin;
   const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
-  const double start = job.seconds();
+  const double start = job.seconds(), held = static_cast<double>(resident_bytes());
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
     const double on_clock = job.seconds(), of_processor = processor_seconds();
-    const SilencedJob silenced(job);
-    const Recipe member = source.draw(number).recipe;
+    JobPart part(job);
+    const Recipe member = source.draw(part, number).recipe;
     if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
     if (output.empty()) continue;
-    make_mesh(job, body.mesh, member, source.file, output);
-    const Json& figures = job.summary["predicted"];
+    make_mesh(part, body.mesh, member, source.file, output);
+    const Json& figures = part.summary["predicted"];
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();
-    peak = std::max(peak, figures["peak_bytes"].get<double>());
+    peak =
+        std::max(peak, held + members_at_once(body.mesh.size) * (figures["peak_bytes"].get<double>() - held));
     seconds += share * (figures["seconds"].get<double>() - std::min(on_clock, of_processor));
     processor += share * (figures["processor_seconds"].get<double>() - of_processor);
   }

@@ -29,7 +29,8 @@ struct BodyRequest {
 struct MemberSource {
   const Recipe& recipe;               // what they have in common
   const std::filesystem::path& file;  // of the recipe, for messages
-  std::function<FamilyMember(std::uint64_t number)> draw;
+  // A member, and its figures in the job's summary. Several may be drawn at once.
+  std::function<FamilyMember(Job& job, std::uint64_t number)> draw;
 };
 
 void declare_members_options(Job& job, MembersRequest& request);

@@ -405,6 +405,20 @@ FieldRegion region_on_surface(Job& job, const Recipe& recipe, const fs::path& fi
   }
 }
 
+// Meshes that are made to be counted are made by the device that makes the mesh.
+int choose_resolution(Job& job, const MeshRequest& request, PlannedMesh planned) {
+  if (request.device.has_gpu()) {
+    planned.device = MeshingDevice::kGpu;
+    try {
+      return choose_resolution(job, request.size, planned);
+    } catch (const DeviceError& error) {
+      request.device.after_failure(job, error);
+      planned.device = MeshingDevice::kCpu;
+    }
+  }
+  return choose_resolution(job, request.size, planned);
+}
+
 }  // namespace
 
 void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
@@ -422,7 +436,7 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
                     !request.uv.empty(),
                     request.even,
                     request.bake};
-  const int resolution = choose_resolution(job, request.size, {field, recipe, region, output, use});
+  const int resolution = choose_resolution(job, request, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   check_levels(request.levels, resolution);
   check_hazard_map(request.hazard, region, recipe, resolution);

@@ -42,6 +42,9 @@ struct DeviceOption {
     }
   }
 
+  // Whether a GPU may be used that has not failed.
+  bool has_gpu() const { return device != "cpu" && !has_failed_ && probe_device().usable; }
+
   // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
   // say why to those who gave --device or --summary. A GPU that cannot be trusted is named in a line of its
   // own. With "cuda", a GPU that is missing or cannot be trusted is an InputError. The summary states the

@@ -42,8 +42,7 @@ TriangleMesh mesh_of_base(const MetaballBody& base, double edge) {
   Recipe recipe;
   recipe.body = base;
   const ImplicitField field(recipe);
-  const Vec3d extent = field.bounds().extent();
-  const double cells = std::max({extent.x, extent.y, extent.z}) / edge;
+  const double cells = field.bounds().longest_side() / edge;
   MeshCollector collector;
   mesh_field(field, field.bounds(), std::max(16, static_cast<int>(std::lround(cells))), collector);
   return std::move(collector.mesh);

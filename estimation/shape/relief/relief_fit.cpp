@@ -25,9 +25,10 @@ constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSma
 // The least spacing that the picture and the cells of a body without folds bear. In the picture the maps of
 // the three axes stand below one another, and show the body from both sides.
 double least_spacing(const TriangleMesh& surface) {
-  const Vec3d extent = surface.bounds().extent();
-  const double most = std::max({extent.x, extent.y, extent.z});
-  const double of_picture = std::max(extent.x + extent.y + extent.z, 2.0 * most) / kMostHeightPictureSide;
+  const Box box = surface.bounds();
+  const Vec3d extent = box.extent();
+  const double of_picture =
+      std::max(extent.x + extent.y + extent.z, 2.0 * box.longest_side()) / kMostHeightPictureSide;
   const double of_cells = portable::cbrt(extent.x * extent.y * extent.z / kMostReliefCells) / kReliefCell;
   return 1.03 * std::max(of_picture, of_cells);
 }

@@ -142,8 +142,9 @@ TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
   for (const auto& entry : std::filesystem::directory_iterator(examples())) {
     if (entry.path().extension() != ".json") continue;
     const ImplicitField field(read_recipe(entry.path()));
-    if (!obstacle_on_gpu(field.tables(), block_side(grid_of_field(field.bounds(), kExampleCells))).empty())
-      continue;
+    constexpr double kMostCells = 32768.0;  // more impulses in a block take the twin minutes
+    const double side = block_side(grid_of_field(field.bounds(), kExampleCells));
+    if (!obstacle_on_gpu(field.tables(), side, kMostCells).empty()) continue;
     SCOPED_TRACE(entry.path().filename().string());
     expect_same(on_twin(field, kExampleCells), on_cpu(field, kExampleCells));
     ++meshed;

@@ -11,7 +11,7 @@ TEST(GpuObstacle, NamesWhatAFieldLacks) {
   recipe.layers = {testing::gabor_layer(0.01, 0.01)};
   const ImplicitField field(recipe);
   EXPECT_EQ(obstacle_on_gpu(field.tables(), 0.05), "");
-  EXPECT_NE(obstacle_on_gpu(field.tables(), 2.0), "");
+  EXPECT_NE(obstacle_on_gpu(field.tables(), 4.0), "");
   SpotLayer fine;
   fine.amplitude = 0.001;
   fine.size = 0.005;
@@ -19,7 +19,7 @@ TEST(GpuObstacle, NamesWhatAFieldLacks) {
   recipe.layers = {fine};
   const ImplicitField pitted(recipe);
   EXPECT_EQ(obstacle_on_gpu(pitted.tables(), 0.05), "");
-  EXPECT_NE(obstacle_on_gpu(pitted.tables(), 2.0), "");
+  EXPECT_NE(obstacle_on_gpu(pitted.tables(), 4.0), "");
   FractalLayer warp;  // moves the points at which the spots are evaluated
   warp.amplitude = 0.5;
   warp.use.combination.kind = Combine::kWarp;
