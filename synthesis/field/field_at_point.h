@@ -180,7 +180,9 @@ ASTROLITH_HD float with_boulders(const FieldView& f, const BlockLists& lists, co
   for (std::uint32_t k = first[0]; k < first[1]; ++k) {
     const FieldBoulder& boulder = boulders[lists.landforms[k]];
     const Vec3f& p = frame == Frame::kPatch && boulder.in_patch ? point.local : point.p;
-    value = join_boulder(boulder.kernel, p.x, p.y, p.z, value);
+    if (is_within_reach(boulder.kernel, p.x, p.y, p.z)) {
+      value = join_boulder(boulder.kernel, p.x, p.y, p.z, value);
+    }
   }
   return value;
 }

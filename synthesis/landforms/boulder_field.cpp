@@ -193,12 +193,22 @@ Box reach_of(const PlacedBoulder& boulder, double reach) {
   return widened(box, 1e-5 * norm(e) + 2e-6 * largest_coordinate(box));
 }
 
+// Most boulders of a block reach few of its points, and whether one is reached costs a twentieth of its noise
+// and facets: runs of points that the boulder does not reach are passed over.
 ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n, const float* __restrict x,
                                              const float* __restrict y, const float* __restrict z,
                                              float* __restrict field) {
+  constexpr int kRun = 16;
   const BoulderKernel boulder = kernel;
+  for (int first = 0; first < n; first += kRun) {
+    const int end = first + kRun < n ? first + kRun : n;
+    int reached = 0;
+#pragma omp simd reduction(| : reached)
+    for (int i = first; i < end; ++i) reached |= is_within_reach(boulder, x[i], y[i], z[i]) ? 1 : 0;
+    if (reached == 0) continue;
 #pragma omp simd
-  for (int i = 0; i < n; ++i) field[i] = join_boulder(boulder, x[i], y[i], z[i], field[i]);
+    for (int i = first; i < end; ++i) field[i] = join_boulder(boulder, x[i], y[i], z[i], field[i]);
+  }
 }
 
 }  // namespace

@@ -77,6 +77,12 @@ ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) 
   return b.roughness > 0.0f ? math::fma(b.roughness, boulder_noise(u, b.seed), smooth) : smooth;
 }
 
+// Whether the boulder changes F at a point.
+ASTROLITH_KERNEL bool is_within_reach(const BoulderKernel& b, float x, float y, float z) {
+  const Vec3f u = boulder_coordinates(b, x, y, z);
+  return squared_length(u.x, u.y, u.z) < b.reach_squared;
+}
+
 // F of the union of the body, with F = `field` at the point, and the boulder.
 ASTROLITH_KERNEL float join_boulder(const BoulderKernel& b, float x, float y, float z, float field) {
   const Vec3f u = boulder_coordinates(b, x, y, z);

@@ -1,3 +1,4 @@
+#include <limits>
 #include <vector>
 
 #include "numerics/box_tree.h"
@@ -94,6 +95,18 @@ TEST(TangentFrame, HoldsAtTheEquatorAndThePoles) {
   for (const Vec3d& n : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, -1}}) {
     expect_right_handed_frame(crossed_tangents(n), n, 1e-15);
   }
+}
+
+TEST(Box, HoldsItsPointsButNoneThatIsNoNumber) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Box box;
+  for (const Vec3d& p : {Vec3d{1, 5, -2}, Vec3d{kNan, kNan, kNan}, Vec3d{-1, 2, 1}}) box.extend(p);
+  EXPECT_EQ(box.min, (Vec3d{-1, 2, -2}));
+  EXPECT_EQ(box.max, (Vec3d{1, 5, 1}));
+  EXPECT_EQ(box.longest_side(), 3.0);
+  const Box other{{0, 0, 0}, {4, 4, 4}};
+  EXPECT_EQ(box_of_both(box, other).max, (Vec3d{4, 5, 4}));
+  EXPECT_EQ(common_part(box, other).min, (Vec3d{0, 2, 0}));
 }
 
 Box random_box(CounterRandom& random, double largest) {

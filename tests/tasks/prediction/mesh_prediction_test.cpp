@@ -87,9 +87,23 @@ TEST(MeshPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
 TEST(MeshPrediction, TrianglesChooseTheResolution) {
   for (const Recipe& recipe : recipes()) {
     const ImplicitField field(recipe);
+    for (const double triangles : {5e3, 2e4, 1e5}) {
+      const int resolution = MeshEstimator(field, recipe, {}).resolution_for(triangles);
+      EXPECT_NEAR(double(made(recipe, resolution).triangles), triangles, 0.055 * triangles);
+    }
+  }
+}
+
+// Probes of a small mesh take many times what the mesh takes, since each is as wide as heights are high.
+TEST(MeshPrediction, SmallMeshesAreCountedAFewTimes) {
+  for (const Recipe& recipe : recipes()) {
+    const ImplicitField field(recipe);
     MeshEstimator estimator(field, recipe, {});
-    const int resolution = estimator.resolution_for(1e5);
-    EXPECT_NEAR(double(made(recipe, resolution).triangles), 1e5, 5.5e3);
+    const int resolution = estimator.resolution_for(2e4);
+    const MeshEstimate estimate = estimator.at(resolution);
+    const MeshStatistics mesh = made(recipe, resolution);
+    EXPECT_NEAR(estimate.triangles, double(mesh.triangles), 0.05 * double(mesh.triangles));
+    EXPECT_LE(estimate.own_evaluations, 4.0 * double(mesh.evaluations));
   }
 }
 

@@ -77,6 +77,15 @@ TEST_F(SynthMembers, EachHasFilesAndALine) {
   EXPECT_EQ(sha256_of_file(folder_ / "alone.ply"), entries.at(4)["files"][0]["sha256"]);
 }
 
+// Threads make members beside each other.
+TEST_F(SynthMembers, TheirLinesHaveTheOrderOfTheirNumbers) {
+  expect_made(make("0:12"), "12 made");
+  std::istringstream file(text("set/set.jsonl"));
+  int next = 0;
+  for (std::string line; std::getline(file, line);) EXPECT_EQ(Json::parse(line)["member"], next++);
+  EXPECT_EQ(next, 12);
+}
+
 // Members of a family differ as it says, and their variations in silhouette too.
 TEST_F(SynthMembers, OfAFamilyAreVaried) {
   expect_made(make("1:2", "--vary 0.3"), "1 made");
