@@ -54,11 +54,12 @@ class DeviceBuffer {
                "allocating memory");
     data_ = static_cast<T*>(data);
   }
+  // Waits until the host's memory is no longer needed.
   DeviceBuffer(std::span<const T> host, cudaStream_t stream) : DeviceBuffer(host.size(), stream) {
-    if (count_ != 0) {
-      check_cuda(cudaMemcpyAsync(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice, stream),
-                 "copying to the device");
-    }
+    if (count_ == 0) return;
+    check_cuda(cudaMemcpyAsync(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice, stream),
+               "copying to the device");
+    check_cuda(cudaStreamSynchronize(stream), "waiting for the device");
   }
   DeviceBuffer(DeviceBuffer&& other) noexcept { *this = std::move(other); }
   DeviceBuffer(const DeviceBuffer&) = delete;

@@ -46,7 +46,7 @@ row() {
 }
 
 table() {
-  local recipe
+  local recipe member
   echo "$(nvidia-smi --query-gpu=name,driver_version --format=csv,noheader | head -1), $(nproc) processors; seconds on the clock."
   echo
   echo "| what | GPU | CPU | bytes |"
@@ -60,7 +60,13 @@ table() {
   local on_gpu on_cpu family=(synthesis/examples/family_of_rubble.json --members 0:200 --triangles 20000)
   on_gpu=$(seconds $build/bin/synth "${family[@]}" --device cuda -o "$made/g{member}.ply")
   on_cpu=$(seconds $build/bin/synth "${family[@]}" --device cpu --threads 2 -o "$made/c{member}.ply")
-  echo "| 200 members of 20,000 triangles; CPU: two threads | $on_gpu | $on_cpu | |"
+  same=equal
+  for member in $(seq -f %07g 0 199); do cmp -s "$made/g$member.ply" "$made/c$member.ply" || same=DIFFERENT; done
+  echo "| 200 members of 20,000 triangles; CPU: two threads | $on_gpu | $on_cpu | $same |"
+  echo
+  local relief=(synthesis/examples/itokawa_relief.json --triangles 1e7 --device cpu -o "$made/cpu.ply")
+  echo "CPU alone, itokawa_relief, 10 M triangles: $(seconds $build/bin/synth "${relief[@]}" --threads 1) s with one" \
+    "thread, $(seconds $build/bin/synth "${relief[@]}" --threads 2) s with two."
   echo
   echo "Mesher, check and file, \`sinks_benchmark itokawa_relief.json 1900\`:"
   echo

@@ -13,17 +13,38 @@ constexpr int kPhasorChunk = 128;
 using PhasorArray = std::array<float, kPhasorChunk>;
 
 // Adds one impulse to the sums at n points, in cells. The impulse lies (dx, dy, dz) cells away from the cell
-// of each point.
+// of each point. Six of seven impulses around a point do not reach it, so that runs of points that an impulse
+// does not reach are passed over.
 ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, float dy, float dz,
                                        std::uint32_t seed, int n, const float* __restrict x,
                                        const float* __restrict y, const float* __restrict z,
                                        float* __restrict real, float* __restrict imaginary) {
+  constexpr int kRun = 16;
   const PhasorKernels k = kernels;
+  float px[kRun], py[kRun], pz[kRun], rest[kRun];
+  std::uint32_t hash[kRun];
+  for (int first = 0; first < n; first += kRun) {
+    const int size = n - first < kRun ? n - first : kRun;
+    int reached = 0;
+#pragma omp simd reduction(| : reached)
+    for (int i = 0; i < size; ++i) {
+      const PhasorImpulse impulse =
+          phasor_impulse(dx, dy, dz, seed, x[first + i], y[first + i], z[first + i]);
+      px[i] = impulse.x;
+      py[i] = impulse.y;
+      pz[i] = impulse.z;
+      rest[i] = impulse.rest;
+      hash[i] = impulse.hash;
+      reached |= impulse.rest > 0.0f ? 1 : 0;
+    }
+    if (reached == 0) continue;
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const PhasorSum sum = with_phasor_impulse(k, dx, dy, dz, seed, x[i], y[i], z[i], {real[i], imaginary[i]});
-    real[i] = sum.real;
-    imaginary[i] = sum.imaginary;
+    for (int i = 0; i < size; ++i) {
+      const PhasorSum sum = with_phasor_impulse(k, {px[i], py[i], pz[i], rest[i], hash[i]},
+                                                {real[first + i], imaginary[first + i]});
+      real[first + i] = sum.real;
+      imaginary[first + i] = sum.imaginary;
+    }
   }
 }
 

@@ -34,18 +34,30 @@ struct PhasorSum {
   float real, imaginary;
 };
 
-// Adds one impulse to the sum at the point (x, y, z), in cells. The impulse lies (dx, dy, dz) cells away from
-// the point's cell; `seed` draws it.
-ASTROLITH_KERNEL PhasorSum with_phasor_impulse(const PhasorKernels& k, float dx, float dy, float dz,
-                                               std::uint32_t seed, float x, float y, float z,
-                                               const PhasorSum& sum) {
+// An impulse as a point sees it. Where `rest` is 0 it adds exactly nothing.
+struct PhasorImpulse {
+  float x, y, z;  // from the impulse to the point, cells
+  float rest;     // 1 - d^2, or 0 beyond one cell
+  std::uint32_t hash;
+};
+
+// The impulse that lies (dx, dy, dz) cells away from the cell of the point (x, y, z), in cells; `seed` draws
+// it.
+ASTROLITH_KERNEL PhasorImpulse phasor_impulse(float dx, float dy, float dz, std::uint32_t seed, float x,
+                                              float y, float z) {
   const float cx = math::floor(x) + dx, cy = math::floor(y) + dy, cz = math::floor(z) + dz;
   const std::uint32_t h = mix_bits(lattice_point(cx, cy, cz, seed));
   const std::uint32_t h1 = mix_bits(h + 0x9e3779b9u), h2 = mix_bits(h + 0x3c6ef372u);
-  const std::uint32_t h3 = mix_bits(h + 0xdaa66d2bu);
   const float px = (x - cx) - unit_float(h), py = (y - cy) - unit_float(h1), pz = (z - cz) - unit_float(h2);
-  const float rest = math::max(0.0f, 1.0f - math::fma(px, px, math::fma(py, py, pz * pz)));
+  return {px, py, pz, math::max(0.0f, 1.0f - math::fma(px, px, math::fma(py, py, pz * pz))), h};
+}
+
+// Adds an impulse to the sum.
+ASTROLITH_KERNEL PhasorSum with_phasor_impulse(const PhasorKernels& k, const PhasorImpulse& impulse,
+                                               const PhasorSum& sum) {
+  const auto& [px, py, pz, rest, h] = impulse;
   const float weight = rest * rest * rest;
+  const std::uint32_t h3 = mix_bits(h + 0xdaa66d2bu);
   // Sixteen bits of one hash choose the height of the direction in the cone, the other sixteen its azimuth.
   // The phase has its own hash.
   const float height = static_cast<float>(h3 >> 16) * 0x1p-16f,
@@ -124,7 +136,8 @@ ASTROLITH_HD inline float height_at(const PhasorNoise& n, const ArrayView&, cons
   for (int c = 0; c < 27; ++c) {
     const Vec3f cell = phasor_cell(c);
     for (int j = 0; j < n.impulses; ++j) {
-      sum = with_phasor_impulse(n.kernels, cell.x, cell.y, cell.z, n.impulse_seed(j), p.x, p.y, p.z, sum);
+      const PhasorImpulse impulse = phasor_impulse(cell.x, cell.y, cell.z, n.impulse_seed(j), p.x, p.y, p.z);
+      if (impulse.rest > 0.0f) sum = with_phasor_impulse(n.kernels, impulse, sum);
     }
   }
   return n.amplitude * phasor_profile(n.profile, math::atan2_turns(sum.imaginary, sum.real));

@@ -184,11 +184,13 @@ double power_of_growth(const MeshEstimate& from, const MeshEstimate& to) {
 int MeshEstimator::counted_resolution(MeshEstimate before, int resolution, double triangles) {
   constexpr int kMostCounts = 4;
   constexpr double kSure = 0.15;  // share of the triangles that the law of growth adds or takes surely enough
-  for (int k = 0; k < kMostCounts && resolution != before.resolution; ++k) {
+  for (int k = 0; k < kMostCounts; ++k) {
     counted_ = made_at(resolution);
     if (!(counted_.triangles > 0.0)) fail_as_too_small();
-    resolution =
+    const int next =
         nearer_resolution(resolution, counted_.triangles, triangles, power_of_growth(before, counted_));
+    if (next == resolution) break;
+    resolution = next;
     if (std::fabs(counted_.triangles / triangles - 1.0) < kSure) break;
     before = counted_;
   }

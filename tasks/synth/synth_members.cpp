@@ -7,12 +7,12 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <mutex>
 #include <new>
 #include <optional>
 #include <vector>
 
+#include "cuda/device.h"
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -190,9 +190,9 @@ class MemberMaker {
     return line;
   }
 
-  // Adds the line of a member to the manifest; null where none was made.
+  // Adds the line of a member to the manifest.
   void keep(const Json& line) const {
-    if (!file_.empty() && !line.is_null()) manifest_.append(line);
+    if (!file_.empty()) manifest_.append(line);
   }
 
   void make_folders(std::uint64_t number) const {
@@ -219,12 +219,11 @@ struct Tally {
   std::uint64_t made = 0, there = 0, failed = 0;
 };
 
-// Makes the members of a range, some beside each other. Their lines reach the manifest in the order of their
-// numbers.
+// Makes the members of a range, some beside each other.
 class RangeMaker {
  public:
   RangeMaker(Job& job, const MemberMaker& maker, const MemberRange& range)
-      : job_(job), maker_(maker), range_(range), next_(range.begin), awaited_(range.begin) {}
+      : job_(job), maker_(maker), range_(range), next_(range.begin) {}
 
   Tally make(int beside_each_other) {
     // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by
@@ -234,7 +233,6 @@ class RangeMaker {
       while (const std::optional<std::uint64_t> number = next())
         within_own_loops([&] { make_or_report(*number); });
     });
-    for (const auto& [number, line] : waiting_) maker_.keep(line);  // after a stop
     if (!job_.stopped()) progress_(1.0, "");
     return tally_;
   }
@@ -253,29 +251,21 @@ class RangeMaker {
   void make_or_report(std::uint64_t number) {
     std::string reason;
     try {
-      if (maker_.is_finished(number)) return end(number, tally_.there);
-      const Json line = maker_.make(number);
-      return end(number, tally_.made, line);
+      const bool is_there = maker_.is_finished(number);
+      const Json line = is_there ? Json() : maker_.make(number);
+      const std::lock_guard lock(mutex_);
+      if (!is_there) maker_.keep(line);
+      ++(is_there ? tally_.there : tally_.made);
+      return;
     } catch (const std::bad_alloc&) {
       reason = "out of memory; try a smaller resolution";
     } catch (const std::exception& e) {
       reason = e.what();
     }
     if (job_.stopped()) return;
-    end(number, tally_.failed);
     const std::lock_guard lock(mutex_);
+    ++tally_.failed;
     job_.report_failure(fmt::format("member {}: {}", number, reason));
-  }
-
-  // Counts a member, and writes the lines that no member before them is missing for.
-  void end(std::uint64_t number, std::uint64_t& count, const Json& line = {}) {
-    const std::lock_guard lock(mutex_);
-    waiting_[number] = line;
-    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == awaited_; ++awaited_) {
-      maker_.keep(first->second);
-      first = waiting_.erase(first);
-    }
-    ++count;
   }
 
   Job& job_;
@@ -283,17 +273,24 @@ class RangeMaker {
   MemberRange range_;
   std::mutex mutex_;
   Progress progress_ = job_.progress("members");
-  std::uint64_t next_, awaited_;
-  std::map<std::uint64_t, Json> waiting_;  // lines of members that ended before an earlier one
+  std::uint64_t next_;
   Tally tally_;
 };
 
-// How many members are made at once. A small mesh leaves threads idle, a large one needs memory.
-int members_at_once(const MeshSizeRequest& size) {
-  constexpr double kMostTriangles = 1e6;
-  constexpr int kMostCells = 320;
-  const bool small = size.triangles > 0.0 ? size.triangles <= kMostTriangles : size.resolution <= kMostCells;
-  return small && !(size.max_memory_gb > 0.0) ? thread_limit() : 1;
+// How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory.
+int members_at_once(const MeshRequest& mesh, std::uint64_t members) {
+  constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOnGpu = 1.5e9;
+  constexpr double kTrianglesOfSquare =
+      5.0;  // of a mesh for the square of its resolution, with some roughness
+  const MeshSizeRequest& size = mesh.size;
+  const double triangles =
+      size.triangles > 0.0 ? size.triangles : kTrianglesOfSquare * size.resolution * size.resolution;
+  if (triangles > kMostTriangles || size.max_memory_gb > 0.0) return 1;
+  double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
+  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles));
+  if (mesh.device.has_gpu())
+    most = std::min(most, static_cast<double>(probe_device().memory_bytes) / kBytesOnGpu);
+  return std::max(1, static_cast<int>(most));
 }
 
 // The first member, the last and some between.
@@ -414,7 +411,7 @@ void make_members(Job& job, const MembersRequest& request, const BodyRequest& bo
     job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
                         counted(static_cast<std::size_t>(unreadable), "line")));
   }
-  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(body.mesh.size));
+  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(body.mesh, range.end - range.begin));
   for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
   job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
@@ -434,10 +431,12 @@ void predict_members(Job& job, const MembersRequest& request, const BodyRequest&
   const std::vector<std::uint64_t> numbers = sampled_members(range, 2);
   const std::uint64_t members = range.end - range.begin;
   const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
-  const double start = job.seconds(), held = static_cast<double>(resident_bytes());
+  const int at_once = members_at_once(body.mesh, members);
+  const double start = job.seconds();
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
-    const double on_clock = job.seconds(), of_processor = processor_seconds();
+    const double on_clock = job.seconds(), of_processor = processor_seconds(),
+                 held = static_cast<double>(resident_bytes());
     JobPart part(job);
     const Recipe member = source.draw(part, number).recipe;
     if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
@@ -446,10 +445,11 @@ void predict_members(Job& job, const MembersRequest& request, const BodyRequest&
     const Json& figures = part.summary["predicted"];
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();
-    peak =
-        std::max(peak, held + members_at_once(body.mesh.size) * (figures["peak_bytes"].get<double>() - held));
-    seconds += share * (figures["seconds"].get<double>() - std::min(on_clock, of_processor));
-    processor += share * (figures["processor_seconds"].get<double>() - of_processor);
+    peak = std::max(peak, held + at_once * (figures["peak_bytes"].get<double>() - held));
+    const double of_member = figures["processor_seconds"].get<double>() - of_processor;
+    processor += share * of_member;
+    seconds += share * (at_once > 1 ? of_member / at_once
+                                    : figures["seconds"].get<double>() - std::min(on_clock, of_processor));
   }
   job.summary["predicted"] = {{"triangles", triangles},
                               {"file_bytes", file_bytes},

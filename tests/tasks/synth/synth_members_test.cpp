@@ -77,13 +77,17 @@ TEST_F(SynthMembers, EachHasFilesAndALine) {
   EXPECT_EQ(sha256_of_file(folder_ / "alone.ply"), entries.at(4)["files"][0]["sha256"]);
 }
 
-// Threads make members beside each other.
-TEST_F(SynthMembers, TheirLinesHaveTheOrderOfTheirNumbers) {
-  expect_made(make("0:12"), "12 made");
-  std::istringstream file(text("set/set.jsonl"));
-  int next = 0;
-  for (std::string line; std::getline(file, line);) EXPECT_EQ(Json::parse(line)["member"], next++);
-  EXPECT_EQ(next, 12);
+// Threads make members beside each other. The folder of one is a file, so that it fails among the others.
+TEST_F(SynthMembers, EachIsMadeOnceBesideOthersOfWhichOneFails) {
+  write("0000005", "no folder");
+  const Outcome outcome =
+      run("r.json --members 0:12 -o {member}/body.ply --manifest set/set.jsonl --resolution 20");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(has(outcome.errors, "11 made, 0 already there, 1 failed, of 12")) << outcome.errors;
+  EXPECT_TRUE(has(outcome.errors, "member 5: ")) << outcome.errors;
+  const auto entries = manifest();
+  EXPECT_EQ(entries.size(), 11u);
+  EXPECT_FALSE(entries.contains(5));
 }
 
 // Members of a family differ as it says, and their variations in silhouette too.

@@ -12,4 +12,11 @@ class task_arena {
   }
 };
 
+namespace this_task_arena {
+template <typename Body>
+void isolate(const Body& body) {
+  body();
+}
+}  // namespace this_task_arena
+
 }  // namespace tbb
