@@ -1,7 +1,5 @@
 #include "cuda/mesher/gpu_mesher.h"
 
-#include <algorithm>
-
 #include "synthesis/field/field_at_point.h"
 #include "synthesis/field/gathering.h"
 

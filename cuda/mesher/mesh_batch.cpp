@@ -1,7 +1,5 @@
 #include "cuda/mesher/mesh_batch.h"
 
-#include <algorithm>
-
 namespace astrolith {
 namespace {
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "numerics/errors.h"
 #include "synthesis/field/bare_body.h"
 
