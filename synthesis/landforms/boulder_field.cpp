@@ -193,8 +193,8 @@ Box reach_of(const PlacedBoulder& boulder, double reach) {
   return widened(box, 1e-5 * norm(e) + 2e-6 * largest_coordinate(box));
 }
 
-// Most boulders of a block reach few of its points, and whether one is reached costs a twentieth of its noise
-// and facets: runs of points that the boulder does not reach are passed over.
+// Most boulders of a block reach few of its points, and a point's place in a boulder costs little beside the
+// noise and the facets there: runs of points that the boulder does not reach are passed over.
 ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n, const float* __restrict x,
                                              const float* __restrict y, const float* __restrict z,
                                              float* __restrict field) {

@@ -277,7 +277,8 @@ class RangeMaker {
   Tally tally_;
 };
 
-// How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory.
+// How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
+// is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
 int members_at_once(const MeshRequest& mesh, std::uint64_t members) {
   constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOnGpu = 1.5e9;
   constexpr double kTrianglesOfSquare =
