@@ -1,4 +1,4 @@
-#include "tasks/synthesis/check_tiles.h"
+#include "tasks/synth/check_tiles.h"
 
 #include "apps/program.h"
 

@@ -1,4 +1,4 @@
-#include "tasks/synthesis/render.h"
+#include "tasks/description/render.h"
 
 #include "apps/program.h"
 

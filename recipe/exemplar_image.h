@@ -18,7 +18,7 @@ struct ExemplarImage {
   std::vector<std::uint16_t> rgb = {};  // (height x width x 3); empty for a grey image
 };
 
-// What a layer with an image states of it. load_recipe() (tasks/synthesis/load_recipe.h) decodes the file.
+// What a layer with an image states of it. load_recipe() (tasks/job/load_recipe.h) decodes the file.
 struct NamedImage {
   std::string image;         // path of a PNG file, relative to the folder of the recipe
   std::string image_sha256;  // SHA-256 of that file, 64 hexadecimal digits

@@ -51,16 +51,14 @@ estimation/shape/fit       -> numerics recipe geometry descriptor synthesis esti
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/relief    -> numerics recipe geometry synthesis
 estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
-tasks/job                  -> numerics
+tasks/job                  -> numerics recipe geometry synthesis cuda
 tasks/repair               -> numerics geometry tasks/job
-tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair tasks/synthesis
-tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
-tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair tasks/synthesis
-tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/synthesis
-tasks/synth                -> numerics recipe geometry gravity synthesis cuda tasks/job tasks/gravity tasks/synthesis tasks/prediction
+tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair
+tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
+tasks/synth                -> numerics recipe geometry gravity synthesis cuda tasks/job tasks/gravity tasks/description
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
-web/core                   -> numerics recipe geometry gravity synthesis tasks/synthesis
+web/core                   -> numerics recipe geometry gravity synthesis tasks/synth
 python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }

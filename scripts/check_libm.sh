@@ -13,7 +13,7 @@ decimated_mesh.cpp.o cos: in OpenMesh, for feature edges, which nothing asks for
 '
 inexact='(exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|sin|cos|sincos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|hypot|cbrt|erf|erfc|lgamma|tgamma)[fl]?'
 
-folders=(numerics recipe geometry gravity descriptor synthesis cuda tasks/gravity tasks/synthesis tasks/prediction tasks/synth apps/CMakeFiles)
+folders=(numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/gravity tasks/description tasks/synth apps/CMakeFiles)
 mapfile -t objects < <(cd "$build" && find "${folders[@]}" -name '*.o' ! -path '*/classify.dir/*' | sort)
 for folder in "${folders[@]}"; do
   grep -q "^$folder/" <<<"$(printf '%s\n' "${objects[@]}")" || { echo "check_libm.sh: $build/$folder is not built" >&2; exit 1; }

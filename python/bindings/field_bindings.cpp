@@ -17,7 +17,7 @@
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
 #include "python/bindings/synthesis_bindings.h"
-#include "tasks/synthesis/body_mesh.h"
+#include "tasks/synth/body_mesh.h"
 
 namespace astrolith::python {
 namespace {

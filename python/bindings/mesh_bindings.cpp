@@ -33,10 +33,10 @@
 #include "python/bindings/synthesis_bindings.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
-#include "tasks/prediction/mesh_prediction.h"
-#include "tasks/synthesis/body_mesh.h"
-#include "tasks/synthesis/erode_body.h"
-#include "tasks/synthesis/patch_ground.h"
+#include "tasks/synth/body_mesh.h"
+#include "tasks/synth/erode_body.h"
+#include "tasks/synth/mesh_prediction.h"
+#include "tasks/synth/patch_ground.h"
 
 namespace astrolith::python {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "recipe/recipe_json.h"
-#include "tasks/synthesis/load_recipe.h"
+#include "tasks/job/load_recipe.h"
 
 namespace astrolith::python {
 

@@ -26,11 +26,11 @@
 #include "synthesis/finish/known_population.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "synthesis/picture/preview.h"
-#include "tasks/synthesis/comparison.h"
-#include "tasks/synthesis/describe_file.h"
-#include "tasks/synthesis/plane_texture.h"
-#include "tasks/synthesis/surface_report.h"
-#include "tasks/synthesis/variation_reference.h"
+#include "tasks/description/comparison.h"
+#include "tasks/description/describe_file.h"
+#include "tasks/description/surface_report.h"
+#include "tasks/description/variation_reference.h"
+#include "tasks/synth/plane_texture.h"
 
 namespace astrolith::python {
 namespace {

@@ -12,15 +12,15 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
+#include "tasks/description/comparison.h"
 #include "tasks/description/shape_options.h"
 #include "tasks/description/surface_options.h"
+#include "tasks/description/surface_report.h"
 #include "tasks/job/job.h"
 #include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/mesh_unit.h"
 #include "tasks/repair/shape_repair.h"
-#include "tasks/synthesis/comparison.h"
-#include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
 namespace {

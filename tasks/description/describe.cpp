@@ -10,14 +10,14 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
+#include "tasks/description/describe_file.h"
 #include "tasks/description/shape_options.h"
 #include "tasks/description/surface_options.h"
+#include "tasks/description/surface_report.h"
+#include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/shape_repair.h"
-#include "tasks/synthesis/describe_file.h"
-#include "tasks/synthesis/device_option.h"
-#include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
 namespace {

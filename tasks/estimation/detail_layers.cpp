@@ -13,7 +13,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/lay_on_base.h"
-#include "tasks/synthesis/load_recipe.h"
+#include "tasks/job/load_recipe.h"
 
 namespace astrolith {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "estimation/shape/details/realism_check.h"
 #include "estimation/shape/report/fit_report.h"
-#include "tasks/synthesis/surface_report.h"
+#include "tasks/description/surface_report.h"
 
 namespace astrolith {
 

@@ -28,10 +28,10 @@
 #include "tasks/estimation/repaired_target.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/job/job.h"
+#include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
 #include "tasks/repair/unit_question.h"
-#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 namespace {

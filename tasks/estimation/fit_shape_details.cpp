@@ -7,11 +7,11 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
+#include "tasks/description/variation_reference.h"
 #include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/relief_size.h"
 #include "tasks/estimation/shape_recipe.h"
-#include "tasks/synthesis/load_recipe.h"
-#include "tasks/synthesis/variation_reference.h"
+#include "tasks/job/load_recipe.h"
 
 namespace astrolith {
 namespace {

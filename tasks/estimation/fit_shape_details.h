@@ -8,8 +8,8 @@
 #include "estimation/shape/details/detailed_check.h"
 #include "estimation/shape/details/details_fit.h"
 #include "estimation/shape/fit/shape_fit.h"
+#include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
-#include "tasks/synthesis/device_option.h"
 
 namespace astrolith {
 

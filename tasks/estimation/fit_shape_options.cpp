@@ -10,8 +10,8 @@
 #include "numerics/errors.h"
 #include "tasks/estimation/relief_size.h"
 #include "tasks/job/density_question.h"
+#include "tasks/job/load_recipe.h"
 #include "tasks/repair/mesh_unit.h"
-#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 namespace {

@@ -13,7 +13,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "tasks/synthesis/surface_report.h"
+#include "tasks/description/surface_report.h"
 
 namespace astrolith {
 namespace {

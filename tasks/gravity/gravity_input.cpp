@@ -10,9 +10,9 @@
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/load_recipe.h"
 #include "tasks/job/words.h"
 #include "tasks/repair/unit_question.h"
-#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 

@@ -19,10 +19,10 @@
 #include "tasks/job/density_question.h"
 #include "tasks/job/job.h"
 #include "tasks/job/json_text.h"
+#include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/picture_options.h"
 #include "tasks/repair/shape_repair.h"
-#include "tasks/synthesis/load_recipe.h"
-#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 namespace {

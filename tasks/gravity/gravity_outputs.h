@@ -9,7 +9,7 @@
 #include "tasks/gravity/gravity_table.h"
 #include "tasks/gravity/landing_sites.h"
 #include "tasks/job/job.h"
-#include "tasks/synthesis/picture_options.h"
+#include "tasks/job/picture_options.h"
 
 namespace astrolith {
 

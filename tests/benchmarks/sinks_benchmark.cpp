@@ -15,7 +15,7 @@
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "synthesis/mesh/recorded_mesh.h"
-#include "tasks/synthesis/load_recipe.h"
+#include "tasks/job/load_recipe.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include "fuzzed_reader.h"
 #include "geometry/io/ply_stream_reader.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "tasks/synthesis/tile_certificate.h"
+#include "tasks/synth/tile_certificate.h"
 
 namespace {
 

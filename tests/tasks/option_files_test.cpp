@@ -8,10 +8,10 @@
 #include "numerics/errors.h"
 #include "tasks/description/compare.h"
 #include "tasks/description/describe.h"
+#include "tasks/description/render.h"
 #include "tasks/gravity/gravity_job.h"
+#include "tasks/synth/check_tiles.h"
 #include "tasks/synth/synth.h"
-#include "tasks/synthesis/check_tiles.h"
-#include "tasks/synthesis/render.h"
 #include "tests/support/scratch_folder.h"
 #ifdef ASTROLITH_WITH_ESTIMATION
 #include "tasks/description/classify.h"

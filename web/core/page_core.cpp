@@ -17,8 +17,8 @@
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/surface_colors.h"
-#include "tasks/synthesis/body_mesh.h"
-#include "tasks/synthesis/erode_body.h"
+#include "tasks/synth/body_mesh.h"
+#include "tasks/synth/erode_body.h"
 
 namespace astrolith {
 namespace {

@@ -1,0 +1,167 @@
+#include "tasks/job/picture_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "tasks/job/pixel_size.h"
+
+namespace astrolith {
+namespace {
+
+constexpr const char* kPictureOptions[] = {"--picture-size", "--picture-bits", "--camera",  "--view",
+                                           "--sun",          "--sun-body",     "--phase",   "--reflectance",
+                                           "--ambient",      "--background",   "--no-marks"};
+
+Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
+
+void require_direction(const char* option, const Vec3d& v) {
+  const double square = squared_norm(v);
+  if (!(square > 0.0) || !std::isfinite(square)) {
+    throw InputError(std::string(option) + ": has no length, so it is no direction; give another");
+  }
+}
+
+PixelSize picture_size(const std::string& text) {
+  return parse_pixel_size("--picture-size", text, kLeastPictureSide, kMostPictureSide);
+}
+
+std::vector<Camera> cameras_of(const std::vector<std::string>& words) {
+  std::vector<Camera> cameras;
+  for (const std::string& camera : words) cameras.push_back(parse_camera("--camera", camera));
+  return cameras;
+}
+
+}  // namespace
+
+void PictureOptions::add_to(OptionTable& app) {
+  app.add_option("--picture-size", size, "pixels of the picture")
+      .placeholder("WxH (default 1280x960)")
+      .default_text("");
+  app.add_option("--picture-bits", bits, "bits of a channel of the picture").check(one_of({8, 16}));
+  app.add_option("--camera", cameras,
+                 "a camera, in words with their numbers: lat and lon in degrees, or from X Y Z, where it "
+                 "stands over the body; roll in degrees; up X Y Z; target X Y Z, what it looks at (default "
+                 "the middle of the mesh); with fov in degrees across the view a pinhole, whose distance is "
+                 "in lengths of the mesh or radii in radii of the mesh (default as the mesh needs), or which "
+                 "stands at X Y Z; may be given several times")
+      .repeated()
+      .placeholder("\"lat 20 lon 45 fov 30 radii 4\"")
+      .default_text("");
+  app.add_option("--view", views,
+                 "look from this direction, along parallel lines; may be given several times")
+      .placeholder("X Y Z")
+      .default_text("");
+  app.add_option("--sun", sun, "towards the sun, in the axes of each view: right, up, to the viewer")
+      .placeholder("X Y Z (default -0.75 0.45 0.55)")
+      .default_text("");
+  app.add_option("--sun-body", sun_body, "towards the sun, in the axes of the mesh")
+      .expected(3)
+      .placeholder("X Y Z")
+      .default_text("");
+  app.add_option("--phase", phase,
+                 "the sun by its phase angle, 0 (behind the viewer) to 180 degrees, and its azimuth in the "
+                 "picture, degrees counter-clockwise from up")
+      .expected(2)
+      .placeholder("ANGLE AZIMUTH")
+      .default_text("");
+  app.add_option("--reflectance", reflectance,
+                 "lambert; lommel-seeliger, as of dark dust; rock, .35 of lommel-seeliger and .65 of lambert")
+      .check(one_of({"rock", "lambert", "lommel-seeliger"}));
+  app.add_option("--ambient", ambient, "light from everywhere as a share of sunlight; 0 leaves shadows black")
+      .check(in_range(0.0, 10.0));
+  app.add_option("--background", background, "behind the body")
+      .check(one_of({"dark", "black", "white", "transparent"}));
+  app.add_flag("--no-marks", no_marks, "without the scale of lengths and the axes");
+}
+
+void PictureOptions::check(const Job& job, bool has_picture, const std::string& remedy) const {
+  if (!has_picture) {
+    for (const char* name : kPictureOptions) {
+      if (job.options.option(name).count() > 0)
+        throw InputError(std::string(name) + ": is about a picture; " + remedy);
+    }
+    return;
+  }
+  if (!size.empty()) picture_size(size);
+  constexpr std::size_t kMostViews = 64;
+  if (cameras.size() + views.size() > kMostViews) {
+    throw InputError("--camera, --view: give at most 64 of them together");
+  }
+  cameras_of(cameras);
+  for (const Direction& view : views) require_direction("--view", vector_of(view));
+  require_direction("--sun", vector_of(sun));
+  int suns = 0;
+  for (const char* name : {"--sun", "--sun-body", "--phase"}) suns += job.options.option(name).count() > 0;
+  if (suns > 1) throw InputError("--sun, --sun-body and --phase place one sun; give one of them");
+  if (!sun_body.empty()) require_direction("--sun-body", {sun_body[0], sun_body[1], sun_body[2]});
+  if (!phase.empty() && !(phase[0] >= 0.0 && phase[0] <= 180.0 && std::fabs(phase[1]) <= 360.0)) {
+    throw InputError("--phase: the angle must be 0 to 180 degrees; the azimuth must be -360 to 360");
+  }
+}
+
+PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
+                                       const std::string& unit) const {
+  PreviewOptions made;
+  if (!size.empty()) {
+    const PixelSize pixels = picture_size(size);
+    made.width = pixels.width;
+    made.height = pixels.height;
+  }
+  made.seed = job.seed;
+  made.sun.direction = vector_of(sun);
+  if (!sun_body.empty()) made.sun = {{sun_body[0], sun_body[1], sun_body[2]}, true};
+  if (!phase.empty()) made.sun = sun_at_phase(phase[0], phase[1]);
+  made.views = cameras_of(cameras);
+  for (const Direction& view : views) made.views.push_back(view_from(vector_of(view)));
+  if (made.views.empty()) made.views = usual_views(mesh);
+  made.ambient = ambient;
+  made.lunar_share = reflectance == "lambert" ? kLambert : reflectance == "rock" ? kRock : kLommelSeeliger;
+  made.transparent = background == "transparent";
+  made.marks.axes = !no_marks;
+  if (!no_marks) made.marks.length_unit = unit;
+  if (background == "black") made.background = {0, 0, 0};
+  if (background == "white") made.background = {1, 1, 1};
+  return made;
+}
+
+bool PictureOptions::chooses_view(const Job& job) {
+  return job.options.option("--camera").count() + job.options.option("--view").count() > 0;
+}
+
+bool PictureOptions::chooses_sun(const Job& job) {
+  return job.options.option("--sun").count() + job.options.option("--sun-body").count() +
+             job.options.option("--phase").count() >
+         0;
+}
+
+void PictureOptions::look_from(const Vec3d& direction) {
+  cameras.clear();
+  views = {{direction.x, direction.y, direction.z}};
+}
+
+void PictureOptions::light_from(const Vec3d& direction) {
+  sun_body.clear();
+  phase.clear();
+  sun = {direction.x, direction.y, direction.z};
+}
+
+void PictureOptions::write(const Job& job, const RenderedPicture& picture,
+                           const std::filesystem::path& file) const {
+  write_png(picture.image, bits, background == "transparent", file);
+  for (const std::size_t view : picture.empty_views) {
+    job.say(
+        fmt::format("note: {}: the body covers no pixel of view {}; change the target of its camera, or "
+                    "bring a pinhole nearer",
+                    file.string(), view + 1));
+  }
+}
+
+bool PictureOptions::has_pinholes() const {
+  const std::vector<Camera> all = cameras_of(cameras);
+  return std::any_of(all.begin(), all.end(), [](const Camera& camera) { return camera.field_of_view > 0.0; });
+}
+
+}  // namespace astrolith

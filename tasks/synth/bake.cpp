@@ -1,0 +1,215 @@
+#include "tasks/synth/bake.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "geometry/atlas/texture_atlas.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/bake/baked_maps.h"
+#include "synthesis/mesh/sample_grid.h"
+#include "synthesis/picture/image_file.h"
+#include "tasks/job/output_names.h"
+#include "tasks/synth/detail_levels.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLeastMap = 64, kMostMap = 16384;
+// The image for which charts are padded where no maps are baked.
+constexpr int kUsualMap = 2048;
+constexpr std::array<const char*, 6> kMapWords{"normal",    "height", "occlusion",
+                                               "curvature", "label",  "color"};
+
+int side_of_level(const MeshRequest& request, std::size_t level) {
+  const int side = request.bake > 0 ? request.bake : kUsualMap;
+  return std::max(side >> level, kLeastMap);
+}
+
+// Where no maps are baked, the image is as large as the charts need.
+TextureAtlas atlas_of_level(const TriangleMesh& mesh, const MeshRequest& request, std::size_t level) {
+  const int side = side_of_level(request, level);
+  return request.bake > 0 ? make_texture_atlas(mesh, side, "--bake")
+                          : make_texture_atlas(mesh, side, "--uv", kMostMap);
+}
+
+fs::path map_file(const fs::path& output, std::size_t level, const std::string& word) {
+  const std::string lod = level == 0 ? "" : "_lod" + std::to_string(level);
+  return output.parent_path() / (output.stem().string() + lod + "_" + word + ".png");
+}
+
+// The mesh to which rays of the occlusion go: its cells are four texels of the finest maps wide.
+class Occluder {
+ public:
+  Occluder(Job& job, const BodyMeshJob& finest, double texel) {
+    constexpr int kMostCells = 640;
+    constexpr double kTexelsPerCell = 4.0;
+    const double longest = finest.field.bounds().longest_side();
+    BodyMeshJob work = finest;
+    work.resolution =
+        std::clamp(static_cast<int>(longest / (kTexelsPerCell * texel)), kMinResolution, kMostCells);
+    work.even = false;
+    if (!lacking_on_gpu(work.field, work.region, work.resolution).empty()) work.device = MeshingDevice::kCpu;
+    cell_ = make_body_mesh(work, collector_, job.stages()).statistics.step;
+  }
+
+  BakeOccluder get() const { return {collector_.mesh, cell_}; }
+
+ private:
+  MeshCollector collector_;
+  double cell_ = 0.0;
+};
+
+struct EncodedMap {
+  const char* word;
+  std::function<std::string()> encode;
+  std::string png = {};
+};
+
+// Encodes the maps side by side.
+std::vector<EncodedMap> encoded_maps(const BakedMaps& maps) {
+  const auto bytes = [side = maps.side](const std::vector<std::uint8_t>& values, int channels) {
+    return [&values, side, channels] { return png_of(values, side, side, channels); };
+  };
+  std::vector<EncodedMap> all{{"normal", bytes(maps.normal, 3)},
+                              {"height", [&maps] { return png_of(maps.height, maps.side, maps.side); }},
+                              {"occlusion", bytes(maps.occlusion, 1)},
+                              {"curvature", bytes(maps.curvature, 1)},
+                              {"label", bytes(maps.label, 1)}};
+  if (!maps.color.empty()) all.push_back({"color", bytes(maps.color, 3)});
+  parallel_for(0, static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
+    EncodedMap& map = all[static_cast<std::size_t>(i)];
+    map.png = map.encode();
+  });
+  return all;
+}
+
+nlohmann::ordered_json figures_of_maps(const BakedMaps& maps) {
+  return {{"side", maps.side},
+          {"height_lowest", maps.lowest},
+          {"height_highest", maps.highest},
+          {"curvature_radius", maps.curvature_radius},
+          {"covered_texels", maps.covered},
+          {"missed_texels", maps.missed}};
+}
+
+// The use of a map in a material; none for maps that glTF has no place for.
+std::optional<SkinMap::Use> use_of(const std::string& word) {
+  if (word == "normal") return SkinMap::Use::kNormal;
+  if (word == "occlusion") return SkinMap::Use::kOcclusion;
+  if (word == "color") return SkinMap::Use::kBaseColor;
+  return std::nullopt;
+}
+
+void add_maps(Job& job, const SkinSources& sources, std::size_t level, const BakedMaps& maps,
+              MeshSkin& skin) {
+  nlohmann::ordered_json figures = figures_of_maps(maps);
+  auto files = nlohmann::ordered_json::object();
+  for (EncodedMap& map : encoded_maps(maps)) {
+    const fs::path file = map_file(sources.output, level, map.word);
+    write_file(file, map.png);
+    files[map.word] = file.filename().string();
+    if (const auto use = use_of(map.word))
+      skin.maps.push_back({*use, file.stem().string(), std::move(map.png)});
+  }
+  figures["files"] = std::move(files);
+  job.summary["maps"].push_back(std::move(figures));
+}
+
+nlohmann::ordered_json figures_of_atlas(const TextureAtlas& atlas, const AtlasStretch& stretch) {
+  return {{"charts", atlas.places.size()}, {"side", atlas.side},
+          {"texel", atlas.texel},          {"padding", kChartPadding},
+          {"filled", stretch.filled},      {"stretch_mean", stretch.mean},
+          {"stretch_p99", stretch.p99},    {"stretch_largest", stretch.largest}};
+}
+
+}  // namespace
+
+void declare_bake_options(Job& job, MeshRequest& request) {
+  Option uv =
+      job.options
+          .add_option(
+              "--uv", request.uv,
+              "texture coordinates in a .glb or .obj. longitude, which --uv means by itself: u = 1/2 + "
+              "longitude / 360 degrees, v from the north pole to the south; the 180th meridian cuts the "
+              "triangles that cross it. charts: an atlas of charts of one scale, none of which overlap, "
+              "padded by 4 texels of a map of 2048, or of --bake")
+          .check(one_of({"longitude", "charts"}))
+          .implied("longitude")
+          .default_text("");
+  job.options
+      .add_option("--bake", request.bake,
+                  "with --uv charts: maps of N x N texels that show the whole recipe on this mesh, however "
+                  "coarse it is. Each texel is carried along the mesh's normal to the surface. Files beside "
+                  "the mesh: rock_normal.png (tangent space, MikkTSpace, y up), _height (16 bits), "
+                  "_occlusion, _curvature, _label, and _color where a layer paints; a .glb holds normals, "
+                  "occlusion and colours in its material. Maps of each level of --lod have half of the side, "
+                  "64 at least")
+      .check(in_range(kLeastMap, kMostMap))
+      .placeholder("N")
+      .default_text("")
+      .needs(uv);
+  for (const char* of_part : {"--tile", "--patch", "--points"}) {
+    job.options.option("--bake").excludes(job.options.option(of_part));
+  }
+}
+
+void check_bake(const MeshRequest& request, const Recipe& recipe, const fs::path& file, bool is_cut) {
+  if (request.bake == 0) return;
+  if (!request.has_charts()) throw InputError("--bake: maps lie on charts; add --uv charts");
+  if (is_cut) throw InputError("--bake: is of the whole body; leave out --tile and --patch");
+  if (recipe.erosion) {
+    throw InputError(
+        file.string() +
+        ": erosion: moves the mesh away from the layers that maps show; leave out --bake, or take "
+        "erosion out of the recipe");
+  }
+}
+
+std::vector<fs::path> map_files(const MeshRequest& request, const fs::path& output) {
+  std::vector<fs::path> files;
+  for (int level = 0; request.bake > 0 && level < request.levels; ++level) {
+    for (const char* word : kMapWords)
+      files.push_back(map_file(output, static_cast<std::size_t>(level), word));
+  }
+  return files;
+}
+
+void add_skins(Job& job, const MeshRequest& request, const SkinSources& sources,
+               std::vector<MeshLevel>& levels) {
+  const BodyMeshJob& finest = sources.made_by;
+  std::optional<Occluder> occluder;
+  std::optional<SurfaceLabels> labels;
+  // All atlases come first: charts that do not fit leave no maps behind.
+  std::vector<TextureAtlas> atlases;
+  for (std::size_t level = 0; level < levels.size(); ++level)
+    atlases.push_back(atlas_of_level(*levels[level].mesh, request, level));
+  job.summary["charts"] = nlohmann::ordered_json::array();
+  if (request.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const TriangleMesh& mesh = *levels[level].mesh;
+    const TextureAtlas& atlas = atlases[level];
+    MeshSkin skin{atlas.coordinates};
+    skin.tangents = vertex_tangents(mesh, skin.coordinates);
+    const AtlasStretch stretch = atlas_stretch(mesh, skin.coordinates);
+    job.summary["charts"].push_back(figures_of_atlas(atlas, stretch));
+    if (request.bake > 0) {
+      if (!occluder) occluder.emplace(job, finest, atlas.texel);
+      if (!labels) labels.emplace(finest.recipe, finest.field);
+      const BakeSources all{finest.field, *labels, sources.colors, occluder->get()};
+      add_maps(job, sources, level, bake_maps(all, {mesh, atlas, skin.tangents}, job.progress("bake")), skin);
+    }
+    levels[level].skin = std::make_shared<const MeshSkin>(std::move(skin));
+  }
+}
+
+}  // namespace astrolith

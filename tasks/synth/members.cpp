@@ -1,0 +1,470 @@
+#include "tasks/synth/members.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include "cuda/device.h"
+#include "geometry/io/mesh_format.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
+#include "numerics/own_loops.h"
+#include "numerics/parallel_for.h"
+#include "numerics/processor_clock.h"
+#include "numerics/vec3_json.h"
+#include "numerics/version/code_version.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/finish/family_member.h"
+#include "tasks/job/load_recipe.h"
+#include "tasks/job/words.h"
+#include "tasks/synth/manifest.h"
+#include "tasks/synth/member_differences.h"
+#include "tasks/synth/mesh_region.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kNumberMark = "{member}";
+constexpr std::uint64_t kMostMembers = std::uint64_t{1} << 53;  // as JSON keeps whole numbers
+
+std::uint64_t member_number(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size() || number > kMostMembers) {
+    throw InputError("members: must be A:B, whole numbers up to 2^53, as in 0:1000");
+  }
+  return number;
+}
+
+struct MemberRange {
+  std::uint64_t begin = 0, end = 0;
+};
+
+MemberRange parse_range(const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  if (colon == text.size()) throw InputError("members: must be A:B, members A to B - 1, as in 0:1000");
+  const std::string_view view = text;
+  const MemberRange range{member_number(view.substr(0, colon)), member_number(view.substr(colon + 1))};
+  if (range.begin >= range.end) {
+    throw InputError(fmt::format("members: {}:{} holds no member; the second number must be the greater one",
+                                 range.begin, range.end));
+  }
+  return range;
+}
+
+bool has_mark(const fs::path& name) { return name.string().find(kNumberMark) != std::string::npos; }
+
+fs::path numbered(const fs::path& pattern, std::uint64_t member) {
+  std::string name = pattern.string();
+  const std::string digits = fmt::format("{:07}", member);
+  for (std::size_t at = 0; (at = name.find(kNumberMark, at)) != std::string::npos; at += digits.size()) {
+    name.replace(at, kNumberMark.size(), digits);
+  }
+  return name;
+}
+
+struct NamedFile {
+  const char* option;
+  fs::path* name;
+};
+
+// All files that a body may have, but the frame of a height map, in the order of the manifest's lines.
+std::vector<NamedFile> files_of(BodyRequest& body) {
+  return {{"--output", &body.output},
+          {"--preview", &body.mesh.preview.file},
+          {"--preview-maps", &body.mesh.preview.maps},
+          {"--height-map", &body.mesh.height_map},
+          {"--hazard-map", &body.mesh.hazard.file},
+          {"--feature-list", &body.mesh.landforms},
+          {"--write-recipe", &body.recipe}};
+}
+
+BodyRequest numbered(BodyRequest body, std::uint64_t member) {
+  for (const NamedFile& file : files_of(body)) *file.name = numbered(*file.name, member);
+  return body;
+}
+
+// The names of the files of a member.
+std::vector<fs::path> names_of(BodyRequest member) {
+  std::vector<fs::path> names;
+  for (const NamedFile& file : files_of(member)) {
+    if (file.name->empty()) continue;
+    names.push_back(*file.name);
+    if (file.name == &member.mesh.height_map)
+      names.push_back(fs::path(*file.name).replace_extension(".json"));
+  }
+  return names;
+}
+
+// The SHA-256 of what all members have in common: the recipe and the options that change files.
+std::string hash_of_family(const Job& job, const Recipe& recipe) {
+  constexpr std::array kNoEffect{"base", "device", "members", "max-memory"};
+  Recipe undescribed = recipe;
+  undescribed.description.clear();
+  std::string text = recipe_to_json(undescribed);
+  for (const auto& [name, value] : job.options.given()) {
+    if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
+    text += name + "=" + value + "\n";
+  }
+  return sha256_of(text);
+}
+
+class MemberMaker {
+ public:
+  MemberMaker(Job& job, const MembersRequest& request, const BodyRequest& body, const MemberSource& source)
+      : job_(job),
+        body_(body),
+        source_(source),
+        file_(request.manifest),
+        manifest_(request.manifest),
+        family_(hash_of_family(job, source.recipe)) {}
+
+  const Manifest& manifest() const { return manifest_; }
+
+  // Throws InputError where members of the manifest were made otherwise: their bytes need not be those that
+  // this program and these options make.
+  void require_same_set() const {
+    const std::string instead =
+        "name another manifest and other files, or remove it to make all members anew";
+    if (manifest_.has_other_family(family_)) {
+      throw InputError(file_.string() + ": has members of another recipe, or made with other options; " +
+                       instead);
+    }
+    const std::string other = manifest_.other_version(version());
+    if (other.empty()) return;
+    throw InputError(file_.string() + ": has members that " + other + " made, and this is " + version() +
+                     "; go on with that program, " + instead);
+  }
+
+  bool is_finished(std::uint64_t member) const {
+    return manifest_.has(member, family_, names_of(numbered(body_, member)));
+  }
+
+  // Makes a member's files. Returns its line of the manifest.
+  Json make(std::uint64_t number) const {
+    make_folders(number);
+    const auto start = std::chrono::steady_clock::now();
+    BodyRequest body = numbered(body_, number);
+    JobPart job(job_);
+    const FamilyMember member = source_.draw(job, number);
+    Json line = {
+        {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
+    for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
+    if (const auto& family = source_.recipe.family; family && !body.mesh.preview.file.empty()) {
+      PictureOptions& look = body.mesh.preview.look;
+      if (family->any_view && !look.chooses_view(job)) {
+        look.look_from(member.view);
+        line["view"] = json_of(member.view);
+      }
+      if (family->any_sun && !look.chooses_sun(job)) {
+        look.light_from(member.sun);
+        line["sun"] = json_of(member.sun);
+      }
+    }
+    if (!body.output.empty()) make_mesh(job, body.mesh, member.recipe, source_.file, body.output);
+    for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
+                               "closed", "manifold", "genus", "components"}) {
+      if (job.summary.contains(figure)) line[figure] = job.summary[figure];
+    }
+    if (!body.recipe.empty()) write_loaded_recipe(member.recipe, body.recipe);
+    if (file_.empty()) return line;
+    std::vector<ManifestFile> written;
+    for (const fs::path& name : names_of(body)) written.push_back(manifest_.file_of(name));
+    line["files"] = to_json(written);
+    line["version"] = version();
+    line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return line;
+  }
+
+  // Adds the line of a member to the manifest.
+  void keep(const Json& line) const {
+    if (!file_.empty()) manifest_.append(line);
+  }
+
+  void make_folders(std::uint64_t number) const {
+    for (const fs::path& name : names_of(numbered(body_, number))) {
+      if (name.has_parent_path()) make_output_folder(name.parent_path());
+    }
+  }
+
+ private:
+  // Two programs with changes that no commit holds differ by the digest of these changes.
+  std::string version() const {
+    return job_.tool() + (kCodeVersion.changes.empty() ? "" : " " + kCodeVersion.changes);
+  }
+
+  Job& job_;
+  const BodyRequest& body_;
+  const MemberSource& source_;
+  fs::path file_;  // the manifest; empty = none
+  Manifest manifest_;
+  std::string family_;
+};
+
+struct Tally {
+  std::uint64_t made = 0, there = 0, failed = 0;
+};
+
+// Makes the members of a range, some beside each other.
+class RangeMaker {
+ public:
+  RangeMaker(Job& job, const MemberMaker& maker, const MemberRange& range)
+      : job_(job), maker_(maker), range_(range), next_(range.begin) {}
+
+  Tally make(int beside_each_other) {
+    // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by
+    // one.
+    const UnsyncedOutputs unsynced;
+    parallel_for(0, beside_each_other, [&](std::int64_t) {
+      while (const std::optional<std::uint64_t> number = next())
+        within_own_loops([&] { make_or_report(*number); });
+    });
+    if (!job_.stopped()) progress_(1.0, "");
+    return tally_;
+  }
+
+ private:
+  // The next member to be made; none at the end, or after a stop.
+  std::optional<std::uint64_t> next() {
+    const std::lock_guard lock(mutex_);
+    if (next_ == range_.end) return {};
+    const double share =
+        static_cast<double>(next_ - range_.begin) / static_cast<double>(range_.end - range_.begin);
+    if (!progress_(share, fmt::format("member {}", next_))) return {};
+    return next_++;
+  }
+
+  void make_or_report(std::uint64_t number) {
+    std::string reason;
+    try {
+      const bool is_there = maker_.is_finished(number);
+      const Json line = is_there ? Json() : maker_.make(number);
+      const std::lock_guard lock(mutex_);
+      if (!is_there) maker_.keep(line);
+      ++(is_there ? tally_.there : tally_.made);
+      return;
+    } catch (const std::bad_alloc&) {
+      reason = "out of memory; try a smaller resolution";
+    } catch (const std::exception& e) {
+      reason = e.what();
+    }
+    if (job_.stopped()) return;
+    const std::lock_guard lock(mutex_);
+    ++tally_.failed;
+    job_.report_failure(fmt::format("member {}: {}", number, reason));
+  }
+
+  Job& job_;
+  const MemberMaker& maker_;
+  MemberRange range_;
+  std::mutex mutex_;
+  Progress progress_ = job_.progress("members");
+  std::uint64_t next_;
+  Tally tally_;
+};
+
+// How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
+// is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
+int members_at_once(const MeshRequest& mesh, std::uint64_t members) {
+  constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOnGpu = 1.5e9;
+  constexpr double kTrianglesOfSquare =
+      5.0;  // of a mesh for the square of its resolution, with some roughness
+  const MeshSizeRequest& size = mesh.size;
+  const double triangles =
+      size.triangles > 0.0 ? size.triangles : kTrianglesOfSquare * size.resolution * size.resolution;
+  if (triangles > kMostTriangles || size.max_memory_gb > 0.0) return 1;
+  double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
+  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles));
+  if (mesh.device.has_gpu())
+    most = std::min(most, static_cast<double>(probe_device().memory_bytes) / kBytesOnGpu);
+  return std::max(1, static_cast<int>(most));
+}
+
+// The first member, the last and some between.
+std::vector<std::uint64_t> sampled_members(const MemberRange& range, std::uint64_t fewest) {
+  constexpr std::uint64_t kMembersForOne = 20, kMost = 8;
+  const std::uint64_t all = range.end - range.begin;
+  const std::uint64_t count = std::min(all, std::clamp(all / kMembersForOne, fewest, kMost));
+  std::vector<std::uint64_t> numbers{range.begin};
+  for (std::uint64_t i = 1; i < count; ++i) numbers.push_back(range.begin + (all - 1) * i / (count - 1));
+  return numbers;
+}
+
+// The meshes of some members that are there. Throws InputError for files that cannot be read back, or would
+// take longer to compare than to make.
+std::vector<TriangleMesh> some_meshes(const BodyRequest& body, const MemberRange& range) {
+  constexpr std::uint64_t kFewest = 4;
+  constexpr std::uintmax_t kMostBytes = 32 << 20;  // a .ply of a million triangles and more
+  std::vector<TriangleMesh> meshes;
+  for (const std::uint64_t number : sampled_members(range, kFewest)) {
+    const fs::path file = numbered(body, number).output;
+    if (!fs::is_regular_file(file)) continue;
+    if (!has_readable_extension(file)) throw InputError("no reader for " + mesh_extension(file));
+    if (fs::file_size(file) > kMostBytes) throw InputError("files of more than 32 MB");
+    meshes.push_back(read_mesh(file));
+  }
+  return meshes;
+}
+
+// Says how much some members differ, or why it does not. The set is made by then, whatever happens here.
+void say_differences(Job& job, const BodyRequest& body, const MemberRange& range) {
+  if (body.output.empty() || body.mesh.points || !body.mesh.tile.empty() || !body.mesh.patch.empty()) return;
+  try {
+    const Json figures = member_differences(some_meshes(body, range), job.progress("differences"));
+    if (figures.is_null()) return;
+    job.summary["members"]["differences"] = figures;
+    job.say(words_of_differences(figures));
+  } catch (const std::exception& e) {
+    if (!job.stopped()) job.say(fmt::format("note: how much members differ is not known: {}", e.what()));
+  }
+}
+
+// Makes the folder of the summary, and throws InputError where the summary cannot be written.
+void prepare_summary(const Job& job) {
+  const OptionRow* const row = job.options.find("--summary");
+  if (row == nullptr || row->words.empty()) return;
+  const fs::path file = row->words.front();
+  if (file.has_parent_path()) make_output_folder(file.parent_path());
+  require_writable(file);
+}
+
+}  // namespace
+
+void declare_members_options(Job& job, MembersRequest& request) {
+  Option members =
+      job.options
+          .add_option(
+              "--members", request.range,
+              "make bodies A to B - 1 of the recipe instead, each with files of its own: {member} in "
+              "their names stands for its number. They are members of the recipe's family, or else have "
+              "their numbers as seeds; with --vary they are the variations of these numbers, of the family's "
+              "members where there is one. Says how much they differ. Member 4711 is the same body on every "
+              "machine")
+          .placeholder("A:B")
+          .makes_folders();
+  job.options.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
+      .needs(members)
+      .excludes(job.options.option("--output"))
+      .placeholder("DIR")
+      .writes([](const auto& words) { return std::vector{fs::path(words.front()) / "{member}.ply"}; });
+  job.options
+      .add_option("--manifest", request.manifest,
+                  "with --members: a file that gets a line of JSON for each finished member. Members that it "
+                  "has, and whose files are whole, are not made again")
+      .needs(members)
+      .placeholder("FILE.jsonl")
+      .writes();
+}
+
+void check_members(const MembersRequest& request, BodyRequest body) {
+  const bool many = !request.range.empty();
+  if (many) parse_range(request.range);
+  for (const auto& [option, file] : files_of(body)) {
+    if (file->empty()) continue;
+    if (many && !has_mark(*file))
+      throw InputError(
+          std::string(option) +
+          ": every member writes a file of its own; put {member} into the name, as in body_{member}" +
+          file->extension().string());
+    if (!many && has_mark(*file))
+      throw InputError(
+          file->string() +
+          ": {member} stands for the number of each body of --members A:B; add --members, or leave "
+          "{member} out");
+  }
+  const bool pictures =
+      !body.mesh.preview.file.empty() || !body.mesh.preview.maps.empty() || !body.mesh.landforms.empty();
+  if (many && body.output.empty() && !body.recipe.empty() && pictures)
+    throw InputError(
+        "--write-recipe without -o keeps recipes alone; leave out --preview, --preview-maps and "
+        "--feature-list, "
+        "or add -o");
+}
+
+void make_members(Job& job, const MembersRequest& request, const BodyRequest& body,
+                  const MemberSource& source) {
+  const MemberRange range = parse_range(request.range);
+  const std::string set = request.manifest.empty() ? "members" : request.manifest.string();
+  if (!body.output.empty()) check_mesh_request(body.mesh, source.recipe, source.file);
+  if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
+  const MemberMaker maker(job, request, body, source);
+  maker.require_same_set();
+  // Folders are made, and what cannot be written is refused, before any work.
+  maker.make_folders(range.begin);
+  const BodyRequest first = numbered(body, range.begin);
+  check_mesh_outputs(job, first.mesh, first.output);
+  prepare_summary(job);
+  if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
+    job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
+                        counted(static_cast<std::size_t>(unreadable), "line")));
+  }
+  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(body.mesh, range.end - range.begin));
+  for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
+  if (!request.manifest.empty()) sync_file_system(request.manifest);
+  job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
+  job.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
+                      tally.failed, range.end - range.begin,
+                      job.stopped() ? "; stopped, the same command goes on" : ""));
+  if (!job.stopped() && tally.failed == 0) say_differences(job, body, range);
+}
+
+void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
+                     const MemberSource& source) {
+  check_mesh_request(body.mesh, source.recipe, source.file);
+  const fs::path output = body.output.empty() && body.recipe.empty() ? "{member}.ply" : body.output;
+  if (!output.empty()) check_mesh_name(body.mesh, output);
+  prepare_summary(job);
+  const MemberRange range = parse_range(request.range);
+  const std::vector<std::uint64_t> numbers = sampled_members(range, 2);
+  const std::uint64_t members = range.end - range.begin;
+  const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
+  const int at_once = members_at_once(body.mesh, members);
+  const double start = job.seconds();
+  double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
+  for (const std::uint64_t number : numbers) {
+    const double on_clock = job.seconds(), of_processor = processor_seconds(),
+                 held = static_cast<double>(resident_bytes());
+    JobPart part(job);
+    const Recipe member = source.draw(part, number).recipe;
+    if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
+    if (output.empty()) continue;
+    make_mesh(part, body.mesh, member, source.file, output);
+    const Json& figures = part.summary["predicted"];
+    triangles += share * figures["triangles"].get<double>();
+    file_bytes += share * figures["file_bytes"].get<double>();
+    peak = std::max(peak, held + at_once * (figures["peak_bytes"].get<double>() - held));
+    const double of_member = figures["processor_seconds"].get<double>() - of_processor;
+    processor += share * of_member;
+    seconds += share * (at_once > 1 ? of_member / at_once
+                                    : figures["seconds"].get<double>() - std::min(on_clock, of_processor));
+  }
+  job.summary["predicted"] = {{"triangles", triangles},
+                              {"file_bytes", file_bytes},
+                              {"peak_bytes", peak},
+                              {"seconds", seconds},
+                              {"processor_seconds", processor},
+                              {"members", members},
+                              {"sampled_members", numbers},
+                              {"own_seconds", job.seconds() - start}};
+  if (job.quiet) return;
+  job.print_result(
+      fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them\n", members,
+                  rounded_count(triangles), byte_words(file_bytes), byte_words(peak),
+                  seconds_words(seconds, processor), numbers.size()));
+}
+
+}  // namespace astrolith

@@ -1,0 +1,224 @@
+#include "tasks/synth/mesh_prediction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <thread>
+
+#include "geometry/io/mesh_format.h"
+#include "geometry/io/ply_stream_writer.h"
+#include "gravity/polyhedron_gravity.h"
+#include "gravity/vertical_directions.h"
+#include "numerics/errors.h"
+#include "numerics/memory_use.h"
+#include "numerics/own_loops.h"
+#include "numerics/portable_double.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
+#include "synthesis/finish/erosion.h"
+#include "synthesis/gabor/gabor_bricks.h"
+
+namespace astrolith {
+namespace {
+
+// Seconds of one processor for a triangle and its half vertex to be checked, written and hashed.
+constexpr double kOutputSeconds = 1.2e-7;
+// Labels, and evening, as shares of the seconds of the mesh.
+constexpr double kLabelShare = 0.5, kEvenShare = 0.5;
+
+// Bytes for a triangle and its half vertex: half a vertex and half a normal as doubles, and a triangle; half
+// of one array is copied as it grows.
+constexpr double kCollected = 36.0 + 6.0;
+// Evening keeps the mesh as it was recorded, and has neighbours, places and vertices before and after a pass.
+constexpr double kRecorded = 24.0 + 6.0, kEvenTables = 50.0;
+// The tables of an erosion: verticals, areas, heights and edges.
+constexpr double kErosionTables = 90.0;
+// The picture, and facets, nodes and multipoles of gravity with its eight columns at half a vertex.
+constexpr double kPicture = 120.0, kGravityTables = 240.0;
+
+// A texel of six maps with their floats, their borders and their files.
+constexpr double kMapTexel = 22.0;
+
+// What is done with a mesh, for each triangle.
+struct UseBytes {
+  double file, memory;
+};
+
+UseBytes bytes_of_use(const PlannedMesh& mesh) {
+  const MeshUse& use = mesh.use;
+  const MeshFormat& format = written_mesh_format(mesh.output.empty() ? "mesh.ply" : mesh.output);
+  const double held = std::max(
+      {use.preview ? kPicture : 0.0, use.erosion ? kErosionTables : 0.0, use.gravity ? kGravityTables : 0.0});
+  // Two numbers of four bytes at half a vertex with labels, eight with gravity.
+  const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
+  // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
+  const double mapped = use.texture_coordinates ? 4.0 : 0.0;
+  if (format.streamed) return {format.file_bytes + values, held > 0.0 ? kCollected + held : 0.0};
+  return {format.file_bytes + mapped, kCollected + format.kept_bytes + held + 4.0 * mapped};
+}
+
+// Memory of the mesher and of the check of its mesh: blocks, narrowed fields, triangles and vertices of
+// layers.
+double meshing_bytes(const MeshEstimate& mesh) {
+  constexpr double kNode = sizeof(BlockNode<FieldBlock>) + 96.0;  // and what the allocator adds to its lists
+  // Links, counts and parents of the half vertex of a triangle, and what growing arrays leave behind.
+  constexpr double kCheck = 0.5 * (64.0 + 4.0 + 8.0) + 26.0;
+  if (!(mesh.blocks > 0.0)) return 0.0;
+  const double of_block = mesh.triangles / mesh.blocks;
+  // Three layers keep the memory of the largest that they held, while the nodes of the next are culled.
+  return mesh.blocks_of_layer *
+         (3.0 * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) + 3.0 * (mesh.list_bytes + kNode) +
+          of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
+}
+
+// The bricks of Gabor impulses that a mesh draws.
+struct BrickCost {
+  double bytes = 0.0;    // that the caches hold at the end, beyond what they hold now
+  double seconds = 0.0;  // of one processor
+};
+
+// From the bricks that the estimate has drawn. A probe draws the bricks that reach its column, so that a
+// brick which k probes need has been drawn with the probability 1 - exp(-k).
+BrickCost cost_of_bricks(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
+  BrickCost cost;
+  if (mesh.probes == 0) return cost;  // all bricks have been drawn
+  const FieldView& view = field.tables();
+  const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
+  const std::vector<GaborCacheUse> caches = field.gabor_caches();
+  const std::vector<double> brick_seconds = field.gabor_brick_seconds();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (!(caches[i].drawn > 0.0)) continue;  // under a mask, or drawn for each point
+    const GaborSurfaceNoise& noise = *view.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
+    const SurfaceBand& band = view.arrays[noise.bands][lists[i].element];
+    const double block = kBlockCells * mesh.step;
+    const double reached = double{band.cell} * kBrickCells + 2.0 * double{band.reach};
+    const double seen = (reached + 2.0 * block) * (reached + 2.0 * block) * mesh.probes / mesh.area;
+    const double bricks = caches[i].drawn / (1.0 - portable::exp(-seen));
+    const double bytes = bricks * caches[i].drawn_bytes / caches[i].drawn;
+    // Bricks that find no room are drawn anew in each layer of blocks that needs them.
+    const double of_two_layers = bytes * std::min((reached + 3.0 * block) / field.bounds().extent().z, 1.0);
+    const double draws = of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(reached / block + 1.0, 1.0);
+    // The heaps of two or more threads have gaps.
+    const double kept = bytes > kMostCacheBytes ? (threads > 1 ? 1.25 : 1.1) * kMostCacheBytes : bytes;
+    cost.bytes += std::max(kept - caches[i].held_bytes, 0.0);
+    cost.seconds += brick_seconds[i] * bricks * draws;
+  }
+  return cost;
+}
+
+// Seconds of one processor.
+template <typename Work>
+double timed(const Work& work) {
+  double seconds = 0.0;
+  on_one_thread([&] {
+    const ProcessorClock clock;
+    work();
+    seconds = clock.seconds();
+  });
+  return seconds;
+}
+
+// How much more a triangle costs in a mesh of `ratio` times as many, if each doubling adds `more` to it.
+double growth(double ratio, double more) { return 1.0 + more * portable::log(ratio) / portable::log(2.0); }
+
+// What an erosion adds.
+struct ErosionCost {
+  double vertical_seconds = 0.0, slide_seconds = 0.0;
+  double bytes = 0.0;  // of the gravity that it slides against, beyond its tables
+};
+
+ErosionCost cost_of_erosion(const PlannedMesh& planned, const MeshEstimate& mesh) {
+  constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kCellsOfGravity = 48;
+  constexpr double kMoreOfDoubling = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
+  const Erosion& erosion = *planned.recipe.erosion;
+  const int cells = std::clamp(mesh.resolution / kCoarser, kFewestCells, kMostCells);
+  TriangleMesh coarse = coarse_mesh_of(planned.field, cells);
+  if (coarse.triangles.empty()) return {};
+  std::vector<Vec3d> up;
+  ErosionCost cost;
+  // Gravity is that of a lattice of some cells; each triangle then adds a little.
+  const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
+  cost.vertical_seconds = finer * finer * timed([&] {
+                            up = vertical_directions(coarse, {erosion.density, erosion.rotation_period});
+                          }) +
+                          kSecondsOfVertical * mesh.triangles;
+  const double ratio = std::max(mesh.triangles / double(coarse.triangles.size()), 1.0);
+  cost.slide_seconds = ratio * growth(ratio, kMoreOfDoubling) *
+                       timed([&] { erode(coarse, up, erosion.talus_angle, erosion.iterations); });
+  const double lattice = std::min(kCellsOfGravity / double(mesh.resolution), 1.0);
+  cost.bytes = std::max(kBytesOfFacet * lattice * lattice - kErosionTables, 0.0) * mesh.triangles;
+  return cost;
+}
+
+// Gravity at all vertices, from some vertices of the coarse mesh.
+double gravity_seconds(const TriangleMesh& coarse, const MeshEstimate& mesh) {
+  constexpr std::size_t kMostPoints = 400;
+  constexpr double kTolerance = 1e-6, kMoreOfDoubling = 0.058;
+  if (coarse.vertices.empty()) return 0.0;
+  std::vector<Vec3d> points;
+  const std::size_t stride = coarse.vertices.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < coarse.vertices.size(); i += stride) points.push_back(coarse.vertices[i]);
+  const double vertices = 0.5 * mesh.triangles;
+  const double ratio = std::max(vertices / double(coarse.vertices.size()), 1.0);
+  const PolyhedronGravity gravity(coarse);
+  return vertices / double(points.size()) * growth(ratio, kMoreOfDoubling) *
+         timed([&] { gravity.at(points, kTolerance); });
+}
+
+int threads_of(const PlannedRun& run) {
+  return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles,
+                            const PlannedRun& run) {
+  const double start = processor_seconds();
+  const double peak_before = static_cast<double>(peak_bytes());
+  MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region, mesh.device);
+  const MeshEstimate estimate =
+      estimator.at(triangles > 0.0 ? estimator.resolution_for(triangles) : resolution);
+  const BrickCost bricks = cost_of_bricks(mesh.field, estimate, threads_of(run));
+  const UseBytes use = bytes_of_use(mesh);
+  const ErosionCost erosion = mesh.use.erosion ? cost_of_erosion(mesh, estimate) : ErosionCost{};
+  const double gravity = mesh.use.gravity ? gravity_seconds(estimator.coarse(), estimate) : 0.0;
+  const double peak_after = static_cast<double>(peak_bytes());
+  give_back_freed_memory();
+  const double even = mesh.use.even ? estimate.triangles : 0.0;
+  const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
+                         kRecorded * even + bricks.bytes + use.memory * estimate.triangles +
+                         kMapTexel * mesh.use.map_side * mesh.use.map_side;
+  MeshPrediction predicted;
+  predicted.resolution = estimate.resolution;
+  predicted.triangles = estimate.triangles;
+  predicted.file_bytes = use.file * estimate.triangles;
+  predicted.peak_bytes =
+      std::max(run.goes_on ? peak_after : peak_before, static_cast<double>(resident_bytes()) + working);
+  const double times = mesh.use.twice ? 2.0 : 1.0;
+  const double shares = times + (mesh.use.labels ? kLabelShare : 0.0) + (mesh.use.even ? kEvenShare : 0.0);
+  const double parallel =
+      shares * estimate.seconds + times * bricks.seconds + erosion.vertical_seconds + gravity;
+  const double serial = times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
+  // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
+  // is nearer to the clock on idle cores.
+  predicted.seconds =
+      std::min(run.clock_seconds, run.processor_seconds) + parallel / threads_of(run) + serial;
+  predicted.processor_seconds = run.processor_seconds + parallel + serial;
+  predicted.own_evaluations = estimate.own_evaluations;
+  predicted.own_seconds = processor_seconds() - start;
+  return predicted;
+}
+
+void require_memory(const PlannedMesh& mesh, const MeshPrediction& predicted, double limit) {
+  if (predicted.peak_bytes <= limit) return;
+  const bool collected = mesh.use.even || bytes_of_use(mesh).memory > 0.0;
+  throw InputError(fmt::format(
+      "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
+      "lower the resolution, raise --max-memory{}",
+      mesh.output.string(), rounded_count(predicted.triangles), predicted.resolution,
+      predicted.peak_bytes / 1e9, limit / 1e9,
+      collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
+}
+
+}  // namespace astrolith

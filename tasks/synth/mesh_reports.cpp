@@ -1,0 +1,112 @@
+#include "tasks/synth/mesh_job_internal.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+namespace astrolith {
+namespace {
+
+std::string name_of(const Layer& layer) {
+  return std::visit([](const auto& l) { return l.name; }, layer);
+}
+
+// The layer in words, such as: layers[2] "grains" (gabor, 63 % of its variance).
+std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
+  std::string share = fmt::format("{:.3g} % of its variance", 100.0 * left.variance_share);
+  if (left.landforms > 0.0) share = fmt::format("{:.3g} of its landforms, {}", left.landforms, share);
+  if (left.layer < 0) return "body.warp (" + share + ")";
+  const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
+  const std::string name = name_of(layer);
+  return fmt::format("layers[{}]{} ({}, {})", left.layer, name.empty() ? "" : " \"" + name + "\"",
+                     type_word(layer), share);
+}
+
+// Whether copies of an image lie on the body, of which a whole body gets some 64 along its side.
+bool repeats_an_image(const LayerLeftOut& left, const Recipe& recipe) {
+  if (left.layer < 0) return false;
+  const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
+  return std::holds_alternative<ExemplarLayer>(layer) || std::holds_alternative<ReliefLayer>(layer);
+}
+
+std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const ImplicitField& field,
+                      bool is_patch) {
+  if (left.landforms > 0.0) {
+    return is_patch ? "smaller than 8 spacings of float coordinates"
+                    : "more than the 2e5 landforms that a whole body gets";
+  }
+  if (!is_patch && repeats_an_image(left, recipe))
+    return "made of images of less than about 1/64 of the body";
+  if (!is_patch) return "finer than float coordinates of a body of this size resolve";
+  return field.has_local_form() ? "finer than the coordinates of this patch resolve"
+                                : "finer than coordinates of a body made by operations resolve";
+}
+
+}  // namespace
+
+void report_layers_left_out(Job& job, const ImplicitField& field, const Recipe& recipe,
+                            const std::filesystem::path& file, bool is_patch) {
+  auto list = nlohmann::ordered_json::array();
+  std::map<std::string, std::string> words;  // by reason
+  for (const LayerLeftOut& left : field.left_out()) {
+    const std::string reason = reason_of(left, recipe, field, is_patch);
+    nlohmann::ordered_json entry;
+    if (left.layer < 0) {
+      entry = {{"layer", nullptr}, {"name", ""}, {"type", "body warp"}};
+    } else {
+      const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
+      entry = {{"layer", left.layer}, {"name", name_of(layer)}, {"type", std::string(type_word(layer))}};
+    }
+    entry["reason"] = reason;
+    entry["finest_length"] = left.finest;
+    entry["variance_share"] = left.variance_share;
+    if (left.landforms > 0.0) entry["landforms"] = left.landforms;
+    list.push_back(std::move(entry));
+    std::string& named = words[reason];
+    named += (named.empty() ? "" : ", ") + in_words(left, recipe);
+  }
+  for (const auto& [reason, named] : words) {
+    job.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, named,
+                        is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
+  }
+  job.summary["layers_left_out"] = std::move(list);
+}
+
+void report_erosion(Job& job, const Erosion& erosion, const ErosionStatistics& done, std::size_t vertices) {
+  job.summary["erosion"] = {{"settled", done.settled},
+                            {"sweeps", done.sweeps},
+                            {"steepest_before", done.steepest_before},
+                            {"steepest_after", done.steepest_after},
+                            {"talus_angle", erosion.talus_angle},
+                            {"moved_vertices", done.moved_vertices},
+                            {"rock_vertices", done.rock_vertices},
+                            {"volume_moved", done.volume_moved}};
+  const std::string words = fmt::format(
+      "erosion: {} of {} vertices moved, {} are rock; the steepest loose slope is {:.2f} degrees, before "
+      "{:.2f}",
+      done.moved_vertices, vertices, done.rock_vertices, done.steepest_after, done.steepest_before);
+  const std::string remedy = done.sweeps < erosion.iterations ? "no slide lowers it; raise --resolution"
+                                                              : "raise erosion.iterations";
+  job.say(words + (done.settled ? fmt::format("; settled below {:g}", erosion.talus_angle)
+                                : fmt::format("; not settled below {:g}: {}", erosion.talus_angle, remedy)));
+}
+
+void report_even(Job& job, const EvenStatistics& done, const std::string& unit) {
+  job.summary["even"] = {
+      {"quality_before", {{"first_percentile", done.before.first_percentile}, {"mean", done.before.mean}}},
+      {"quality_after", {{"first_percentile", done.after.first_percentile}, {"mean", done.after.mean}}},
+      {"mean_move", done.mean_move},
+      {"largest_move", done.largest_move},
+      {"largest_value", done.largest_value},
+      {"moved_vertices", done.moved},
+      {"kept_vertices", done.kept}};
+  job.say(fmt::format(
+      "even: quality {:.2f} at the first percentile, before {:.2f}, and {:.2f} in the mean, before "
+      "{:.2f}; {} vertices moved along the surface, by {:.3g} {} in the mean and {:.3g} at most, "
+      "{} stay; |F| <= {:.2g}",
+      done.after.first_percentile, done.before.first_percentile, done.after.mean, done.before.mean,
+      done.moved, done.mean_move, unit, done.largest_move, done.kept, done.largest_value));
+}
+
+}  // namespace astrolith

@@ -1,0 +1,206 @@
+#include "tasks/synth/preview.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "numerics/parallel_for.h"
+#include "numerics/srgb.h"
+#include "synthesis/field/feature_list.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/surface_labels.h"
+#include "synthesis/picture/picture_maps.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/pixel_size.h"
+#include "tasks/synth/npz_file.h"
+
+namespace astrolith {
+namespace {
+
+Vec3f linear_color(const VertexColor& color) {
+  const auto linear = [](std::uint8_t byte) { return static_cast<float>(linear_of_srgb(byte / 255.0)); };
+  return {linear(color[0]), linear(color[1]), linear(color[2])};
+}
+
+PixelSize size_of_maps(const std::string& text) {
+  return parse_pixel_size("--maps-size", text, kLeastPictureSide, kMostPictureSide);
+}
+
+// Pictures of members are smaller unless a size is given: many are made, of meshes of few triangles. Pictures
+// for training show the body alone, and their pixels are those of their maps.
+PreviewOptions picture_options(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
+                               const std::string& unit) {
+  PreviewOptions options = request.look.options(job, mesh, unit);
+  const bool of_member = job.options.option("--members").count() > 0;
+  if (of_member && request.look.size.empty()) options.width = 640, options.height = 480;
+  if (of_member || !request.maps.empty()) options.marks = {};
+  return options;
+}
+
+// The cameras of the request with the size of its maps.
+PreviewOptions maps_options(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh) {
+  PreviewOptions options = picture_options(job, request, mesh, "");
+  options.marks = {};
+  if (request.maps_size.empty()) return options;
+  const PixelSize size = size_of_maps(request.maps_size);
+  options.width = size.width;
+  options.height = size.height;
+  return options;
+}
+
+constexpr std::int32_t kNothing = -1;
+
+// What the layers made, for each pixel.
+struct LayerMaps {
+  std::vector<std::int32_t> layer, instance;
+};
+
+// The pixels of a band of rows that show the surface, and their points in the frame of the mesh.
+struct SeenPixels {
+  std::vector<std::size_t> pixels;
+  std::vector<MeshVertex> points;
+};
+
+SeenPixels seen_in_rows(const PictureMaps& maps, int first, int end) {
+  SeenPixels seen;
+  for (int y = first; y < end; ++y) {
+    for (int x = 0; x < maps.width; ++x) {
+      const auto i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(maps.width) + static_cast<std::size_t>(x);
+      if (!maps.shows_surface(i)) continue;
+      seen.pixels.push_back(i);
+      seen.points.push_back({to_float(maps.point(x, y)), {}});
+    }
+  }
+  return seen;
+}
+
+LayerMaps label_pixels(const PictureMaps& maps, const MapsSource& source, const Progress& progress) {
+  const SurfaceLabels labels(source.recipe, source.field, source.region.cube());
+  const FeatureFinder landforms(source.field, source.recipe, source.region.cube(), source.cell);
+  const Vec3d origin = source.region.center;
+  LayerMaps made{std::vector<std::int32_t>(maps.depth.size(), kNothing),
+                 std::vector<std::int32_t>(maps.depth.size(), kNothing)};
+  constexpr int kBand = 32;  // rows between two reports of progress
+  for (int first = 0; first < maps.height; first += kBand) {
+    const SeenPixels seen = seen_in_rows(maps, first, std::min(first + kBand, maps.height));
+    std::vector<VertexLabel> label(seen.points.size());
+    std::vector<float> ground(seen.points.size());
+    labels.label(origin, seen.points, label, ground);
+    parallel_for(0, static_cast<std::int64_t>(seen.pixels.size()), [&](std::int64_t k) {
+      const auto at = static_cast<std::size_t>(k);
+      const Vec3f& p = seen.points[at].position;
+      made.layer[seen.pixels[at]] = label[at].label;
+      made.instance[seen.pixels[at]] = landforms.row_at(origin + Vec3d{p.x, p.y, p.z}, ground[at]);
+    });
+    if (!report(progress, double(first) / maps.height, "labels"))
+      throw WorkError("preview-maps: stopped before the maps were complete");
+  }
+  report(progress, 1.0, "");
+  return made;
+}
+
+std::vector<double> flat(const std::vector<Vec3d>& vectors) {
+  std::vector<double> numbers;
+  for (const Vec3d& v : vectors) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+  return numbers;
+}
+
+}  // namespace
+
+void declare_preview_options(Job& job, PreviewRequest& request) {
+  job.options
+      .add_option("--preview", request.file,
+                  "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
+                  "patch from above its ground and obliquely")
+      .placeholder("FILE.png")
+      .writes();
+  request.look.add_to(job.options);
+  job.options.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
+  job.options
+      .add_option("--preview-maps", request.maps,
+                  "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
+                  "instance, the row of the --feature-list; with the cameras")
+      .placeholder("FILE.npz")
+      .writes();
+  job.options.add_option("--maps-size", request.maps_size, "pixels of the maps")
+      .placeholder("WxH (default that of the picture)")
+      .default_text("");
+}
+
+void check_preview(const Job& job, const PreviewRequest& request) {
+  const bool has_picture = !request.file.empty(), has_maps = !request.maps.empty();
+  request.look.check(job, has_picture, "add --preview FILE.png");
+  if (has_maps && !has_picture) {
+    throw InputError("--preview-maps: is about a picture; add --preview FILE.png");
+  }
+  if (!request.maps_size.empty()) {
+    if (!has_maps) throw InputError("--maps-size: is about maps; add --preview-maps FILE.npz");
+    size_of_maps(request.maps_size);
+  }
+  if (has_picture) {
+    require_extension(request.file, {".png"});
+    require_writable(request.file);
+  }
+  if (has_maps) {
+    require_extension(request.maps, {".npz"});
+    require_writable(request.maps);
+  }
+}
+
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const ImplicitField& field) {
+  if (request.file.empty() || !request.look.has_pinholes()) return;
+  constexpr int kCells = 32;  // along the longest side of the body
+  MeshStatistics made;
+  const TriangleMesh coarse = coarse_mesh_of(field, kCells, &made);
+  if (coarse.triangles.empty()) return;
+  // Cameras that stand by the body's box are known to about a cell.
+  const double deep = 2.0 * made.step;
+  for (const Vec3d& place : pinhole_places(coarse, picture_options(job, request, coarse, ""))) {
+    if (field.value(place) > deep) fail_inside();
+  }
+}
+
+void require_cameras_outside(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh) {
+  if (request.file.empty() || !request.look.has_pinholes()) return;
+  require_cameras_outside(mesh, picture_options(job, request, mesh, ""));
+}
+
+void write_preview(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
+                   const std::string& unit) {
+  PreviewOptions options = picture_options(job, request, mesh, unit);
+  for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
+  request.look.write(job, render_picture(mesh, options, job.progress("preview")), request.file);
+}
+
+void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
+                        const MapsSource& source) {
+  const PictureMaps maps = render_maps(mesh, maps_options(job, request, mesh), job.progress("maps"));
+  const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
+  const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
+                            corner = flat(maps.corner), eye = flat(maps.eye), pixel{maps.pixel};
+  std::vector<NpzArray> arrays{npz_array("depth", {h, w}, maps.depth),
+                               npz_array("normal", {h, w, 3}, maps.normal),
+                               npz_array("view", {h, w}, maps.view)};
+  LayerMaps layers;
+  if (source.recipe.erosion) {
+    job.say("note: erosion moves what layers made: " + request.maps.string() +
+            " has depth and normal, but neither layer nor instance");
+  } else {
+    layers = label_pixels(maps, source, job.progress("labels"));
+    arrays.push_back(npz_array("layer", {h, w}, layers.layer));
+    arrays.push_back(npz_array("instance", {h, w}, layers.instance));
+  }
+  arrays.push_back(npz_array("right", {views, 3}, right));
+  arrays.push_back(npz_array("up", {views, 3}, up));
+  arrays.push_back(npz_array("from", {views, 3}, from));
+  arrays.push_back(npz_array("corner", {views, 3}, corner));
+  arrays.push_back(npz_array("eye", {views, 3}, eye));
+  arrays.push_back(npz_array("pixel", {}, pixel));
+  write_npz(arrays, request.maps);
+}
+
+}  // namespace astrolith

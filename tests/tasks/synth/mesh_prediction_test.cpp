@@ -1,0 +1,157 @@
+#include "tasks/synth/mesh_prediction.h"
+
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kThreads = 1;
+
+MeshPrediction predicted(const Recipe& recipe, int resolution, const MeshUse& use = {},
+                         const Region& region = {}, const std::string& output = "mesh.ply") {
+  const ImplicitField field(recipe);
+  return predict_mesh({field, recipe, region, output, use}, resolution, 0.0, {kThreads});
+}
+
+MeshStatistics made(const Recipe& recipe, int resolution, MeshTile tile = {}) {
+  const ImplicitField field(recipe);
+  MeshDiscard sink;
+  return mesh_field(field, field.bounds(), resolution, sink, {}, tile);
+}
+
+Recipe with_landforms() {
+  return parse_recipe(R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100], [100, 0, 0, 75]]},
+  "layers": [{"type": "simplex", "amplitude": 4, "frequency": 0.02, "octaves": 4},
+             {"type": "craters", "population": {"count": 60, "least_diameter": 10, "greatest_diameter": 60,
+                                                "exponent": 2}},
+             {"type": "boulders", "population": {"count": 80, "least_diameter": 8, "greatest_diameter": 25,
+                                                 "exponent": 2}}]})",
+                      "test");
+}
+
+Recipe hills() {
+  Recipe recipe = testing::potato_recipe(20, 3);
+  recipe.layers.push_back(testing::fractal_layer(0.04, 4.0, 6));
+  return recipe;
+}
+
+Recipe impulses() {
+  Recipe recipe = testing::potato_recipe(20, 3);
+  recipe.layers.push_back(testing::gabor_layer(0.004, 0.002));
+  return recipe;
+}
+
+std::vector<Recipe> recipes() {
+  return {testing::potato_recipe(20, 3), hills(), with_landforms(), impulses()};
+}
+
+TEST(MeshPrediction, TrianglesAreNearThoseOfTheMesh) {
+  for (const Recipe& recipe : recipes()) {
+    for (const int resolution : {40, 120, 320}) {
+      const double triangles = double(made(recipe, resolution).triangles);
+      const MeshPrediction mesh = predicted(recipe, resolution);
+      EXPECT_EQ(mesh.resolution, resolution);
+      EXPECT_NEAR(mesh.triangles / triangles, 1.0, 0.15) << resolution;
+      EXPECT_NEAR(mesh.file_bytes / (25.0 * triangles), 1.0, 0.15) << resolution;
+    }
+  }
+}
+
+TEST(MeshPrediction, ASmallMeshIsExact) {
+  const Recipe recipe = hills();
+  EXPECT_EQ(predicted(recipe, 60).triangles, double(made(recipe, 60).triangles));
+}
+
+TEST(MeshPrediction, ATileIsPredictedAlone) {
+  const Recipe recipe = testing::potato_recipe(20, 3);
+  Region region;
+  region.tile = {1, 3};
+  EXPECT_EQ(predicted(recipe, 64, {}, region).triangles, double(made(recipe, 64, region.tile).triangles));
+  const double triangles = double(made(recipe, 200, region.tile).triangles);
+  EXPECT_NEAR(predicted(recipe, 200, {}, region).triangles / triangles, 1.0, 0.2);
+}
+
+// Samples are counted, because seconds depend on what else the machine does.
+TEST(MeshPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
+  for (const Recipe& recipe : recipes()) {
+    const double own = predicted(recipe, 320).own_evaluations;
+    EXPECT_GT(own, 0.0);
+    EXPECT_LE(own, 0.15 * double(made(recipe, 320).evaluations));
+  }
+}
+
+TEST(MeshPrediction, TrianglesChooseTheResolution) {
+  for (const Recipe& recipe : recipes()) {
+    const ImplicitField field(recipe);
+    for (const double triangles : {5e3, 2e4, 1e5}) {
+      const int resolution = MeshEstimator(field, recipe, {}).resolution_for(triangles);
+      EXPECT_NEAR(double(made(recipe, resolution).triangles), triangles, 0.055 * triangles);
+    }
+  }
+}
+
+// Probes of a small mesh take many times what the mesh takes, since each is as wide as heights are high.
+TEST(MeshPrediction, SmallMeshesAreCountedAFewTimes) {
+  for (const Recipe& recipe : recipes()) {
+    const ImplicitField field(recipe);
+    MeshEstimator estimator(field, recipe, {});
+    const int resolution = estimator.resolution_for(2e4);
+    const MeshEstimate estimate = estimator.at(resolution);
+    const MeshStatistics mesh = made(recipe, resolution);
+    EXPECT_NEAR(estimate.triangles, double(mesh.triangles), 0.05 * double(mesh.triangles));
+    EXPECT_LE(estimate.own_evaluations, 4.0 * double(mesh.evaluations));
+  }
+}
+
+TEST(MeshPrediction, MoreTrianglesThanTheFinestMeshHasAreRefused) {
+  const Recipe recipe = testing::potato_recipe(20, 3);
+  const ImplicitField field(recipe);
+  EXPECT_THROW(MeshEstimator(field, recipe, {}).resolution_for(1e10), InputError);
+}
+
+TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
+  Recipe recipe = hills();
+  recipe.erosion = Erosion{.talus_angle = 30.0};
+  constexpr int kFine = 1024;  // so that its bytes are more than the test itself has taken
+  const MeshPrediction plain = predicted(recipe, kFine);
+  const MeshPrediction labels = predicted(recipe, kFine, {.labels = true}),
+                       gravity = predicted(recipe, kFine, {.gravity = true}),
+                       even = predicted(recipe, kFine, {.even = true}),
+                       erosion = predicted(recipe, kFine, {.erosion = true});
+  EXPECT_NEAR(labels.file_bytes / plain.file_bytes, 29.0 / 25.0, 0.01);
+  EXPECT_NEAR(gravity.file_bytes / plain.file_bytes, 41.0 / 25.0, 0.01);
+  EXPECT_GT(gravity.processor_seconds, 1.3 * plain.processor_seconds);
+  EXPECT_GT(erosion.processor_seconds, plain.processor_seconds);
+  // Bytes for each triangle that is held in memory.
+  const auto more = [&](const MeshPrediction& use) {
+    return (use.peak_bytes - plain.peak_bytes) / plain.triangles;
+  };
+  EXPECT_GT(more(even), 40.0);
+  EXPECT_GT(more(erosion), 90.0);
+  EXPECT_GT(more(gravity), 200.0);
+  EXPECT_GT(more(predicted(recipe, kFine, {}, {}, "mesh.stl")), 30.0);
+}
+
+// Impulses are kept in bricks, of which a finer mesh needs no more.
+TEST(MeshPrediction, ImpulsesTakeMemory) {
+  Recipe recipe = impulses();
+  const double fine = predicted(recipe, 1024).peak_bytes;  // more than the test itself has taken
+  std::get<GaborLayer>(recipe.layers.front()).pixel_size = 0.016;
+  EXPECT_GT(fine, predicted(recipe, 1024).peak_bytes + 1e6);
+}
+
+TEST(MeshPrediction, MemoryThatIsNotThereIsRefused) {
+  const Recipe recipe = hills();
+  const ImplicitField field(recipe);
+  const PlannedMesh planned{field, recipe, {}, "mesh.obj", {}};
+  const MeshPrediction mesh = predict_mesh(planned, 256, 0.0, {kThreads});
+  EXPECT_NO_THROW(require_memory(planned, mesh, 1.01 * mesh.peak_bytes));
+  EXPECT_THROW(require_memory(planned, mesh, 0.99 * mesh.peak_bytes), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith
