@@ -88,6 +88,35 @@ struct BodyOperation {
 inline constexpr int kMaxOperationDepth = 8;  // the most levels of operands within operands
 inline constexpr int kMaxOperations = 256;    // the most operations in a whole recipe
 
+// A measured body whose shape goes into a morph.
+struct Donor {
+  std::string name;    // for people
+  double share = 1.0;  // > 0; the shares of a morph count by their ratios
+  // How the donor is turned before its axes are stretched: mirrored along axes, then turned about z by `turn`
+  // degrees in the space where its ellipsoid is a sphere, so that the ellipsoid keeps its axes.
+  bool mirror[3] = {false, false, false};
+  double turn = 0.0;  // [-360, 360]
+  // Half axes of the ellipsoid with the donor's moments of inertia, in the donor's own length unit, > 0.
+  Vec3d half_axes{1.0, 1.0, 1.0};
+  // Exactly one body of metaballs without operations, groups and warp. Its centre of mass is the origin, and
+  // its principal axes are the coordinate axes.
+  std::vector<MetaballBody> body;
+};
+inline constexpr int kLeastDonors = 2, kMostDonors = 4;
+inline constexpr double kMostElongation = 5.0;  // the largest ratio of two half axes of a morph
+
+// A shape between measured ones, which is none of them. Let s_j be the signed distance to donor j after its
+// axes have been stretched to `half_axes`, e that to the ellipsoid of these half axes, and w_j the shares,
+// which add up to 1. The body is the set where
+//   e + roughness sum_j w_j (s_j - e) / sqrt(sum_j w_j^2) >= 0.
+// The root keeps the variance of the donors' residuals, which a mean would lower
+// (synthesis/body/morph_grid.h).
+struct Morph {
+  Vec3d half_axes{1.0, 1.0, 1.0};  // length units, > 0
+  double roughness = 1.0;          // [0, 3]
+  std::vector<Donor> donors;       // kLeastDonors .. kMostDonors
+};
+
 // m(p) = (sum_i f_i(p)^m)^(1/m),  f_i = exp(a - b |p - c_i|^2 / r_i^2)     (thesis eq. 4.3 to 4.5, per
 // sphere) with f_i = 0 beyond cutoff_radii * r_i. The bare body is the set where m(p) >= iso_value. With a =
 // b and iso_value = 1 a lone sphere's surface has its own radius.
@@ -103,14 +132,17 @@ inline constexpr int kMaxOperations = 256;    // the most operations in a whole 
 //
 // With a warp, m is evaluated at p + warp(p) instead of p. Low frequencies and high amplitudes of a warp make
 // caves, tunnels and arches.
+//
+// A body of type "morph" has a `morph` in place of its metaballs, and neither groups nor a warp.
 struct MetaballBody {
+  std::optional<Morph> morph;
   Kernel kernel = Kernel::kGaussian;
   double a = 1.0;               // tension, > 0; at most kMaxTension for kernels other than the Gaussian
   double b = 1.0;               // tension, > 0
   double blend_exponent = 1.0;  // the thesis's m, > 0 or >= 1; blend_exponent * a <= kMaxKernelExponent
   double iso_value = 1.0;       // the thesis's T, > 0
   double cutoff_radii = 5.0;    // support of a kernel in radii of its sphere, > 1
-  std::vector<Sphere> spheres;  // at least one
+  std::vector<Sphere> spheres;  // at least one, none in a morph
   // Subtractive metaballs, which belong to no group. A body with subtractive metaballs must have
   // blend_exponent (a - log iso_value) <= kMaxNetExponent.
   std::vector<Sphere> subtract;

@@ -98,7 +98,34 @@ void check_groups(const MetaballBody& body, const Place& place) {
   }
 }
 
+void check_donor(const Donor& donor, const Place& place) {
+  const Place at = place.field("body");
+  if (donor.body.size() != 1) at.fail("must be one body");
+  const MetaballBody& body = donor.body.front();
+  if (body.morph) at.field("type").fail("must be \"metaballs\" in a donor");
+  if (!body.operations.empty() || !body.groups.empty() || body.warp) {
+    at.fail("has operations, groups or a warp; a donor is metaballs alone");
+  }
+}
+
+void check_morph(const Morph& morph, const Place& place) {
+  const std::size_t n = morph.donors.size();
+  if (n < kLeastDonors || n > kMostDonors) {
+    place.field("donors").fail(fmt::format("must be {} to {} donors, are {}; draw between measured bodies",
+                                           kLeastDonors, kMostDonors, n));
+  }
+  const auto [x, y, z] = morph.half_axes;
+  const double ratio = std::max({x, y, z}) / std::min({x, y, z});
+  if (ratio > kMostElongation) {
+    place.field("half_axes")
+        .fail(fmt::format("have a ratio of {:.3g}; no donor bears more than {:g}, so state rounder ones",
+                          ratio, kMostElongation));
+  }
+}
+
 }  // namespace
+
+void visit_row(FieldVisitor& v, bool (&mirror)[3]) { v.array("flag", {&mirror[0], &mirror[1], &mirror[2]}); }
 
 void visit_row(FieldVisitor& v, Vec3d& vector, const NumberLimits& limits) {
   v.row(Column{"x", vector.x, limits}, Column{"y", vector.y, limits}, Column{"z", vector.z, limits});
@@ -146,10 +173,29 @@ void visit_fields(FieldVisitor& v, BodyOperation& operation) {
   v.required("body", operation.operand.front());
 }
 
-void visit_fields(FieldVisitor& v, MetaballBody& body) {
-  std::string type = "metaballs";
-  v.required("type", type);
-  if (type != "metaballs") v.place().field("type").fail("must be \"metaballs\", is " + quote_text(type));
+void visit_fields(FieldVisitor& v, Donor& donor) {
+  v.field("name", donor.name);
+  v.field("share", donor.share, kPositive);
+  v.field("mirror", donor.mirror);
+  v.field("turn", donor.turn, range(-360.0, 360.0));
+  v.required("half_axes", donor.half_axes, kPositive);
+  if (v.reading()) donor.body.emplace_back();
+  v.rule(check_donor, donor);
+  v.required("body", donor.body.front());
+}
+
+namespace {
+
+// The fields of a body of type "morph", but for its operations.
+void visit_morph(FieldVisitor& v, Morph& morph) {
+  v.required("half_axes", morph.half_axes, kPositive);
+  v.field("roughness", morph.roughness, range(0.0, 3.0));
+  v.rule(check_morph, morph);
+  v.required("donors", morph.donors);
+}
+
+// The fields of a body of type "metaballs", but for its operations.
+void visit_metaballs(FieldVisitor& v, MetaballBody& body) {
   v.word("kernel", body.kernel, kKernels, kernel_word);
   v.field("a", body.a, kPositive);
   v.field("b", body.b, kPositive);
@@ -166,6 +212,22 @@ void visit_fields(FieldVisitor& v, MetaballBody& body) {
              range(0, static_cast<int>(body.spheres.size()) - 1));
   v.rule(check_groups, body);
   v.field("warp", body.warp);
+}
+
+}  // namespace
+
+void visit_fields(FieldVisitor& v, MetaballBody& body) {
+  constexpr std::string_view kMetaballs = "metaballs", kMorph = "morph";
+  std::string type(body.morph ? kMorph : kMetaballs);
+  v.required("type", type);
+  if (type != kMetaballs && type != kMorph) {
+    v.place().field("type").fail("must be \"metaballs\" or \"morph\", is " + quote_text(type));
+  }
+  if (type == kMorph) {
+    visit_morph(v, body.morph ? *body.morph : body.morph.emplace());
+  } else {
+    visit_metaballs(v, body);
+  }
   v.rule(check_operations, body);
   v.field_if(!body.operations.empty(), "operations", body.operations);
 }

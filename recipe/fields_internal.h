@@ -19,6 +19,7 @@ void check_family(const Recipe& recipe, const Place& place);
 
 void visit_row(FieldVisitor& v, Vec3d& vector, const NumberLimits& limits);
 void visit_fields(FieldVisitor& v, MetaballBody& body);
+void visit_fields(FieldVisitor& v, Donor& donor);
 void visit_fields(FieldVisitor& v, BodyOperation& operation);
 void visit_fields(FieldVisitor& v, Warp& warp);
 // The fields of a fractal sum that follow its frequency, and the limit on the frequency of its last octave.

@@ -32,6 +32,7 @@ struct BodyAtPoint {
 // A leaf as an operand of operations: its gradient is divided by its length.
 ASTROLITH_HD inline BodySample operand_at(const BodyLeaf& leaf, const ArrayView& arrays,
                                           const LeafLists& lists, std::uint32_t number, const Vec3f& p) {
+  if (leaf.grid.exists()) return spline_distance(leaf.grid, arrays[leaf.grid.coefficients], p);
   const SurfaceDistance<float> d =
       leaf_distance(leaf, lists, number, leaf.warped ? warped(leaf.warp, arrays, p) : p);
   const Vec3f& g = d.log_gradient;

@@ -51,7 +51,7 @@ ASTROLITH_HD inline Interval bound_combined(const OperatorParameters<double>& o,
   return {s.low - 2e-5 * std::fabs(s.low) - rounding, s.high + 2e-5 * std::fabs(s.high) + rounding};
 }
 
-// An interval that holds s for every float point of a box, in length units. Expects a body with operations.
+// An interval that holds s for every float point of a box, in length units. Expects a body that is not plain.
 // The interval is tighter if surfaces of operands are farther than `height` from the box.
 // `lists.metaballs(leaf)` holds the metaballs of a leaf that reach the box; `scratch` has room for the
 // longest of these lists.
@@ -66,6 +66,11 @@ ASTROLITH_HD Interval bound_distance(const BodyTables& body, const ArrayView& ar
     if (!steps[i].is_leaf) {
       --size;
       stack[size - 1] = bound_combined(steps[i].bounds, stack[size - 1], stack[size]);
+      continue;
+    }
+    const SplineGrid& grid = leaves[steps[i].leaf].grid;
+    if (grid.exists()) {
+      stack[size++] = bound_spline_distance(grid, arrays[grid.coefficients], box);
       continue;
     }
     const MetaballParameters<float>& leaf = leaves[steps[i].leaf].metaballs;

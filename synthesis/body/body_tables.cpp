@@ -6,6 +6,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/portable_double.h"
 #include "synthesis/body/metaball_box.h"
+#include "synthesis/body/morph_grid.h"
 #include "synthesis/body/surface_projection.h"
 
 namespace astrolith {
@@ -46,10 +47,13 @@ class BodyBuilder {
 
   BodyTables build(const MetaballBody& body) {
     const Part whole = add(body);
-    if (body.operations.empty()) steps_.clear();
+    const bool plain = body.operations.empty() && !body.morph;
+    if (plain) steps_.clear();
+    const bool gridded =
+        std::any_of(leaves_.begin(), leaves_.end(), [](const BodyLeaf& leaf) { return leaf.grid.exists(); });
     // The points of a plain body are warped before they are evaluated.
-    const Box supports = body.operations.empty() ? plain_supports_ : whole.supports;
-    return {arrays_.add(leaves_), arrays_.add(steps_), supports, whole.lipschitz_bound};
+    const Box supports = plain ? plain_supports_ : whole.supports;
+    return {arrays_.add(leaves_), arrays_.add(steps_), supports, whole.lipschitz_bound, gridded};
   }
 
  private:
@@ -74,16 +78,26 @@ class BodyBuilder {
   }
 
   Part add_leaf(const MetaballBody& body, std::uint32_t number) {
+    if (body.morph) return add_grid(*body.morph);
     const PreparedMetaballs metaballs = prepare_metaballs(body);
     const Box supports = support_bounds(metaballs);
     if (number == 0) plain_supports_ = supports;
-    BodyLeaf leaf{metaballs.parameters, body.warp.has_value(), {}, arrays_.add(metaballs.spheres)};
+    BodyLeaf leaf{metaballs.parameters, body.warp.has_value(), {}, arrays_.add(metaballs.spheres), {}};
     if (leaf.warped) {
       leaf.warp = make_coordinate_warp(*body.warp, hash_seed(seed_, kBodyStream - number), supports, arrays_);
     }
     leaves_.push_back(leaf);
     return {leaf.warped ? widened(supports, leaf.warp.bound) : supports,
             leaf.warped ? leaf.warp.lipschitz_bound : 1.0};
+  }
+
+  Part add_grid(const Morph& morph) {
+    BodyLeaf leaf;
+    leaf.metaballs.gradient_floor = 1e-8f;  // gradients of grids have unit length
+    leaf.grid = make_morph_grid(morph, arrays_);
+    leaves_.push_back(leaf);
+    const auto& [low, high] = std::pair(leaf.grid.low, leaf.grid.high);
+    return {{{low.x, low.y, low.z}, {high.x, high.y, high.z}}, 1.0};
   }
 
   std::uint64_t seed_;
@@ -117,10 +131,29 @@ ASTROLITH_SIMD_CLONES void divide_by_lengths(float floor, int n, float* __restri
   }
 }
 
+ASTROLITH_SIMD_CLONES void evaluate_grid(const SplineGrid& leaf_grid, const float* coefficients, int n,
+                                         const float* __restrict x, const float* __restrict y,
+                                         const float* __restrict z, float* __restrict distance,
+                                         float* __restrict gx, float* __restrict gy, float* __restrict gz) {
+  const SplineGrid grid = leaf_grid;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const BodySample s = spline_distance(grid, coefficients, {x[i], y[i], z[i]});
+    distance[i] = s.distance;
+    gx[i] = s.gx;
+    gy[i] = s.gy;
+    gz[i] = s.gz;
+  }
+}
+
 // Evaluates a leaf as an operand of operations: its gradients are divided by their lengths.
 void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
                       std::span<const MetaballSphere<float>> spheres, int n, const float* x, const float* y,
                       const float* z, Columns& out) {
+  if (leaf.grid.exists()) {
+    return evaluate_grid(leaf.grid, arrays[leaf.grid.coefficients], n, x, y, z, out.at(0), out.at(1),
+                         out.at(2), out.at(3));
+  }
   const MetaballsView metaballs{leaf.metaballs, spheres};
   float *gx = out.at(1), *gy = out.at(2), *gz = out.at(3);
   if (leaf.warped) {

@@ -8,16 +8,19 @@
 #include "recipe/recipe.h"
 #include "synthesis/body/body_operators.h"
 #include "synthesis/body/metaball_body.h"
+#include "synthesis/body/spline_grid.h"
 #include "synthesis/noise/coordinate_warp.h"
 
 namespace astrolith {
 
-// Metaballs with one set of parameters, and the warp of their coordinates.
+// Metaballs with one set of parameters, and the warp of their coordinates; or the grid of a morph, which has
+// no metaballs.
 struct BodyLeaf {
   MetaballParameters<float> metaballs;
   bool warped = false;
   CoordinateWarp warp;
   ArrayRange<MetaballSphere<float>> spheres;  // subtractive spheres last, as in every list of spheres
+  SplineGrid grid;
 };
 
 // A step of the evaluation on a stack: it pushes the distance of a leaf, or replaces the upper two distances
@@ -34,10 +37,11 @@ struct BodyTables {
   ArrayRange<BodyStep> steps;
   Box supports;                  // holds the supports of all kernels that add, and so every surface
   double lipschitz_bound = 1.0;  // bound of |grad s|; above 1 with operators and warps
+  bool gridded = false;          // whether a leaf is a grid: heights then move the surface beyond `supports`
 
-  // Whether the body has no operations: one leaf and no steps. If that leaf is warped, the caller maps points
-  // through warp_points() and boxes through body_box() before the evaluation, since layers on the surface use
-  // warped coordinates too.
+  // Whether the body is one leaf of metaballs, without operations: it has no steps. If that leaf is warped,
+  // the caller maps points through warp_points() and boxes through body_box() before the evaluation, since
+  // layers on the surface use warped coordinates too.
   ASTROLITH_HD bool plain() const { return steps.count == 0; }
 };
 

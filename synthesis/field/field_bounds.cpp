@@ -172,7 +172,9 @@ double height_limit(const FieldModel& model) {
         bound_metaballs(f.leaf(0).metaballs, NoMetaballs{}.metaballs(0), anywhere, kAnyHeight, nullptr);
     return -(1.0 - kSlack) * beyond.level_max / beyond.gradient_max;
   }
-  const Interval beyond = bound_distance(f.body, f.arrays, NoMetaballs{}, anywhere, kAnyHeight, nullptr);
+  // Beyond the domains of all grids.
+  const Vec3d far = f.body.supports.max + f.body.supports.extent();
+  const Interval beyond = bound_distance(f.body, f.arrays, NoMetaballs{}, {far, far}, kAnyHeight, nullptr);
   return beyond.high < 0.0 ? -(1.0 - kSlack) * beyond.high : 0.0;
 }
 
@@ -183,6 +185,7 @@ Box surface_bounds(const FieldModel& model) {
   const BodyLeaf& first = model.tables.leaf(0);
   Box box = model.body.supports;
   if (model.body.plain() && first.warped) box = widened(box, first.warp.bound);
+  if (model.body.gridded) box = widened(box, model.height_bound);
   for (int pass = 0; pass < 4; ++pass) {
     Box tighter;
     extend_bounds(model, model.metaballs.lists(), box, kDepth, tighter);

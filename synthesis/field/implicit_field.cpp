@@ -121,7 +121,7 @@ void FieldBlock::paint(std::span<const LayerPaint> paints, const Vec3d* origin, 
 
 ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
                              const std::optional<PatchCube>& patch, const Progress& progress) {
-  if (!recipe.body || recipe.body->spheres.empty()) {
+  if (!recipe.body || (!recipe.body->morph && recipe.body->spheres.empty())) {
     throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
   auto model = std::make_shared<FieldModel>();

@@ -9,6 +9,7 @@
 #include "numerics/length_unit.h"
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/body/morph_grid.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/finish/rough_ground.h"
 #include "synthesis/landforms/population_cells.h"
@@ -245,6 +246,7 @@ double finest_size(const Recipe& recipe) {
   }
   if (landform < kAnySize) return landform;
   for (const Sphere& sphere : recipe.body->spheres) metaball = std::min(metaball, 2.0 * sphere.radius);
+  if (recipe.body->morph) metaball = 2.0 * morph_spacing(*recipe.body->morph);
   return metaball;
 }
 

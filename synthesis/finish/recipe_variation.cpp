@@ -26,7 +26,13 @@ constexpr double kBendCycles = 0.5;  // cycles in half a diagonal
 constexpr double kAmplitudeChange = 0.5;
 constexpr double kFrequencyChange = 0.25;
 
-enum Stream : std::uint64_t { kSeedStream, kAxesStream, kBendStream, kLayerStream };
+// The standard deviations of the logarithms of a morph's roughness and shares at strength 1, and that of the
+// turns of its donors in degrees.
+constexpr double kRoughnessChange = 0.4;
+constexpr double kShareChange = 0.8;
+constexpr double kTurn = 30.0;
+
+enum Stream : std::uint64_t { kSeedStream, kAxesStream, kBendStream, kLayerStream, kMorphStream };
 
 Box sphere_bounds(const MetaballBody& body) {
   Box box;
@@ -87,6 +93,23 @@ class Deformation {
   Vec3d stretch_{1, 1, 1};
 };
 
+// Varies a shape between measured ones: its axes, what it has of each donor, and how rough it is.
+void vary(Morph& morph, double strength, std::uint64_t seed) {
+  CounterRandom random(seed, kMorphStream);
+  const auto change = [&](double& number, double deviation) {
+    number = round_to_seven_digits(
+        number * portable::exp(deviation * strength * std::clamp(random.normal(), -2.0, 2.0)));
+  };
+  for (double* axis : {&morph.half_axes.x, &morph.half_axes.y, &morph.half_axes.z})
+    change(*axis, kAxisStretch);
+  change(morph.roughness, kRoughnessChange);
+  for (Donor& donor : morph.donors) {
+    change(donor.share, kShareChange);
+    donor.turn =
+        std::clamp(round_to_seven_digits(donor.turn + kTurn * strength * random.normal()), -360.0, 360.0);
+  }
+}
+
 // Varies the fields that a layer names. Returns the factor by which the heights of the layer have grown.
 double vary(Layer& layer, double strength, CounterRandom random) {
   return std::visit(
@@ -136,12 +159,16 @@ Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variatio
         CounterRandom(recipe.seed ^ (variation_seed * 0x9e3779b97f4a7c15u), kSeedStream).next() >> 11;
   }
   varied.provenance.achieved.clear();
-  const Deformation deform(sphere_bounds(*recipe.body), strength, variation_seed);
-  for_each_sphere(*varied.body, [&](Sphere& s) {
-    const Vec3d c = deform(s.center);
-    s.radius = round_to_seven_digits(s.radius * deform.growth(s.center));
-    s.center = {round_to_seven_digits(c.x), round_to_seven_digits(c.y), round_to_seven_digits(c.z)};
-  });
+  if (varied.body->morph) {
+    vary(*varied.body->morph, strength, variation_seed);
+  } else {
+    const Deformation deform(sphere_bounds(*recipe.body), strength, variation_seed);
+    for_each_sphere(*varied.body, [&](Sphere& s) {
+      const Vec3d c = deform(s.center);
+      s.radius = round_to_seven_digits(s.radius * deform.growth(s.center));
+      s.center = {round_to_seven_digits(c.x), round_to_seven_digits(c.y), round_to_seven_digits(c.z)};
+    });
+  }
   std::vector<double> growth;
   for (std::size_t i = 0; i < varied.layers.size(); ++i) {
     const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);

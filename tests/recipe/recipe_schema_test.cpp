@@ -102,6 +102,18 @@ Layer fractal(Noise noise) {
   return layer;
 }
 
+MetaballBody morph() {
+  MetaballBody body;
+  body.morph.emplace();
+  return body;
+}
+
+Donor donor() {
+  Donor donor;
+  donor.body.emplace_back();
+  return donor;
+}
+
 BodyOperation operation(Operator kind) {
   BodyOperation operation;
   operation.kind = kind;
@@ -123,6 +135,8 @@ std::map<std::string, Fields> described() {
           {"family", fields_of(Family{})},
           {"drawn_field", fields_of(DrawnField{})},
           {"metaballs", fields_of(MetaballBody{})},
+          {"morph", fields_of(morph())},
+          {"donor", fields_of(donor())},
           {"r_function", fields_of(operation(Operator::kUnion))},
           {"blend", fields_of(operation(Operator::kBlend))},
           {"clean_union", fields_of(operation(Operator::kCleanUnion))},
