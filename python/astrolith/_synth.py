@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+import sys
 from typing import Any
 
 from astrolith import _arrays, _jobs, _options, _synthesis
@@ -40,17 +39,12 @@ def synth(recipe: RecipeLike, *, threads: int = 0, progress: Progress = None, **
     """
     given = _jobs.words("synth", _OPTIONS, options)
     workers = _options.threads(threads)
+    text = ""
     if _arrays.is_file_name(recipe):
         given.append(("recipe", [_arrays.file_name(recipe, "recipe")]))
-        return _jobs.figures_of(_synthesis.synth(given, workers, progress))
-    descriptor, name = tempfile.mkstemp(suffix=".json", prefix=".recipe", dir=".")
-    try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
-            stream.write(json_of(recipe)[0])
-        given.append(("recipe", [name]))
-        return _jobs.figures_of(_synthesis.synth(given, workers, progress))
-    finally:
-        os.remove(name)
+    else:
+        text = json_of(recipe)[0]
+    return _jobs.figures_of(_synthesis.synth(given, text, [sys.prefix, "/usr/local", "/usr"], workers, progress))
 
 
 _jobs.document(synth, _OPTIONS)

@@ -11,11 +11,12 @@ namespace nb = nanobind;
 namespace astrolith::python {
 namespace {
 
-// The figures as JSON.
-std::string call_synth(const GivenOptions& given, int threads, nb::object progress) {
-  return run_job(std::move(progress), threads, [given](JobState& state) {
+// The figures as JSON. `recipe` is the text of a recipe; where it is empty, an option names the file.
+std::string call_synth(const GivenOptions& given, const std::string& recipe,
+                       const std::vector<std::filesystem::path>& prefixes, int threads, nb::object progress) {
+  return run_job(std::move(progress), threads, [=](JobState& state) {
     CalledJob job("synth", state);
-    const JobWork work = declare_synth(job);
+    const JobWork work = declare_called_synth(job, {recipe, prefixes});
     job.take(given);
     work();
     return job.figures();
@@ -32,7 +33,8 @@ std::vector<OptionDescription> options_of_synth() {
 }  // namespace
 
 void bind_synth(nb::module_& module) {
-  module.def("synth", &call_synth, nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  module.def("synth", &call_synth, nb::arg("options"), nb::arg("recipe"), nb::arg("prefixes"),
+             nb::arg("threads"), nb::arg("progress").none());
   module.def("options_of_synth", &options_of_synth);
 }
 

@@ -98,3 +98,17 @@ except KeyboardInterrupt:
 """
     done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert done.stdout == "stopped\n" and done.stderr == ""
+
+
+def test_a_recipe_in_memory_has_a_name_and_leaves_no_file(tmp_path, monkeypatch):
+    page = tmp_path / "share" / "astrolith" / "page.html"
+    page.parent.mkdir(parents=True)
+    page.write_text('<script type="application/json" id="recipe">null</script>')
+    monkeypatch.delenv("ASTROLITH_PAGE", raising=False)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    astrolith.synth(BALL, page="out")
+    assert '"name":"recipe.astro"' in (tmp_path / "out" / "index.html").read_text()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["out", "share"]
+    with pytest.raises(ValueError, match="^recipe: body"):
+        astrolith.synth({**BALL, "body": {"type": "cube"}}, output="ball.ply")

@@ -1,7 +1,9 @@
 // --device: whether a program computes on the GPU.
 #pragma once
 
+#include <atomic>
 #include <future>
+#include <memory>
 #include <string>
 #include <system_error>
 
@@ -43,14 +45,14 @@ struct DeviceOption {
   }
 
   // Whether a GPU may be used that has not failed.
-  bool has_gpu() const { return device != "cpu" && !has_failed_ && probe_device().usable; }
+  bool has_gpu() const { return device != "cpu" && !*has_failed_ && probe_device().usable; }
 
   // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
   // say why to those who gave --device or --summary. A GPU that cannot be trusted is named in a line of its
   // own. With "cuda", a GPU that is missing or cannot be trusted is an InputError. The summary states the
   // device.
   ChosenDevice choose(Job& job) const {
-    if (has_failed_) return on_cpu(job, "it failed before");
+    if (*has_failed_) return on_cpu(job, "the GPU failed before");
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
       throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
@@ -73,12 +75,13 @@ struct DeviceOption {
     return chosen.gpu ? on_cpu(job, words) : chosen;
   }
 
-  // The CPU in place of a GPU that failed in the middle of the work, from now on. Where --device asked for
-  // the GPU, `error` goes on.
+  // The CPU in place of a GPU that failed in the middle of the work, from now on and for all copies of this
+  // option: members have one each. The first failure is told. Where --device asked for the GPU, `error` goes
+  // on.
   ChosenDevice after_failure(Job& job, const DeviceError& error) const {
     if (device == "cuda") throw;
-    has_failed_ = true;
-    job.note(std::string(error.what()) + "; the CPU does the work from its beginning");
+    if (!has_failed_->exchange(true))
+      job.note(std::string(error.what()) + "; the CPU does the work from its beginning");
     job.summary["device"] = "cpu";
     return on_cpu(job, error.what());
   }
@@ -92,7 +95,8 @@ struct DeviceOption {
     return {false, "computed on the CPU" + (why.empty() ? "" : ": " + why)};
   }
 
-  mutable bool has_failed_ = false;  // the GPU, in the middle of a mesh
+  // Whether the GPU failed in the middle of a mesh.
+  std::shared_ptr<std::atomic<bool>> has_failed_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 }  // namespace astrolith

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -42,6 +44,11 @@ class Job {
   virtual void say(const std::string& line) const = 0;
   // Tells a person the line once the work is done. Work that fails tells no notes.
   virtual void note(const std::string& line) = 0;
+  // Tells a note that has not been told by this function yet. Parts of the work call it beside each other.
+  void note_once(const std::string& line) {
+    const std::lock_guard lock(parts_mutex_);
+    if (noted_.insert(line).second) note(line);
+  }
   // Hands over the text of a result, at once. Throws WorkError where nobody takes it any more.
   virtual void print_result(const std::string& text) = 0;
   // Reports a part of the work that failed while the rest goes on.
@@ -72,10 +79,14 @@ class Job {
 
   std::string name_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+
+ private:
+  std::mutex parts_mutex_;
+  std::set<std::string> noted_;  // by parts
 };
 
-// A part of a job with a summary of its own, which tells nothing but failures. Parts may work beside each
-// other.
+// A part of a job with a summary of its own, which tells nothing but failures and notes. Parts may work
+// beside each other. A note of several parts is told once.
 class JobPart : public Job {
  public:
   explicit JobPart(Job& whole) : Job(Whole{whole}), whole_(whole) { quiet = true; }
@@ -86,7 +97,7 @@ class JobPart : public Job {
   bool stopped() const override { return whole_.stopped(); }
   const char* stopped_by() const override { return whole_.stopped_by(); }
   void say(const std::string&) const override {}
-  void note(const std::string&) override {}
+  void note(const std::string& line) override { whole_.note_once(line); }
   void print_result(const std::string&) override {}
   void report_failure(const std::string& line) override { whole_.report_failure(line); }
 

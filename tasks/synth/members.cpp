@@ -110,7 +110,8 @@ std::vector<fs::path> names_of(BodyRequest member) {
   return names;
 }
 
-// The SHA-256 of what all members have in common: the recipe and the options that change files.
+// The SHA-256 of what all members have in common: the recipe and the options that change files. A file that
+// an option reads counts by its content.
 std::string hash_of_family(const Job& job, const Recipe& recipe) {
   constexpr std::array kNoEffect{"base", "device", "members", "max-memory"};
   Recipe undescribed = recipe;
@@ -118,7 +119,12 @@ std::string hash_of_family(const Job& job, const Recipe& recipe) {
   std::string text = recipe_to_json(undescribed);
   for (const auto& [name, value] : job.options.given()) {
     if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
-    text += name + "=" + value + "\n";
+    const OptionRow& row = *job.options.find(name);
+    text += name + "=";
+    if (!row.reads) text += value;
+    for (const fs::path& file : row.reads ? row.reads(row.words) : std::vector<fs::path>{})
+      text += sha256_of_file(file) + " ";
+    text += "\n";
   }
   return sha256_of(text);
 }
@@ -308,13 +314,13 @@ std::vector<std::uint64_t> sampled_members(const MemberRange& range, std::uint64
 // take longer to compare than to make.
 std::vector<TriangleMesh> some_meshes(const BodyRequest& body, const MemberRange& range) {
   constexpr std::uint64_t kFewest = 4;
-  constexpr std::uintmax_t kMostBytes = 32 << 20;  // a .ply of a million triangles and more
+  constexpr std::uintmax_t kLargestCompared = 32 << 20;  // a .ply of a million triangles and more
   std::vector<TriangleMesh> meshes;
   for (const std::uint64_t number : sampled_members(range, kFewest)) {
     const fs::path file = numbered(body, number).output;
     if (!fs::is_regular_file(file)) continue;
     if (!has_readable_extension(file)) throw InputError("no reader for " + mesh_extension(file));
-    if (fs::file_size(file) > kMostBytes) throw InputError("files of more than 32 MB");
+    if (fs::file_size(file) > kLargestCompared) throw InputError("files of more than 32 MB");
     meshes.push_back(read_mesh(file));
   }
   return meshes;

@@ -419,6 +419,18 @@ int choose_resolution(Job& job, const MeshRequest& request, PlannedMesh planned)
   return choose_resolution(job, request.size, planned);
 }
 
+// Makes the files within the memory of --max-memory, on a GPU, too.
+void make_files_in_memory(Job& job, const MeshPlan& plan, const ChosenDevice& chosen) {
+  const MeshSizeRequest& size = plan.request.size;
+  if (!(size.max_memory_gb > 0.0)) return make_files(job, plan, chosen);
+  try {
+    const MemoryGuard guard(memory_limit(size.max_memory_gb));
+    make_files(job, plan, chosen);
+  } catch (const std::bad_alloc&) {
+    fail_memory(job, size, plan.output);
+  }
+}
+
 }  // namespace
 
 void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
@@ -447,18 +459,12 @@ void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const
   const MeshPlan plan{request, recipe, file, region, field, resolution, output};
   if (chosen) {
     try {
-      return make_files(job, plan, chosen);
+      return make_files_in_memory(job, plan, chosen);
     } catch (const DeviceError& error) {
       chosen = request.device.after_failure(job, error);
     }
   }
-  if (!(request.size.max_memory_gb > 0.0)) return make_files(job, plan, chosen);
-  try {
-    const MemoryGuard guard(memory_limit(request.size.max_memory_gb));
-    make_files(job, plan, chosen);
-  } catch (const std::bad_alloc&) {
-    fail_memory(job, request.size, output);
-  }
+  make_files_in_memory(job, plan, chosen);
 }
 
 void summarize_output(Job& job, const fs::path& output) {

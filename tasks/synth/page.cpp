@@ -1,5 +1,6 @@
 #include "tasks/synth/page.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -20,14 +21,20 @@ namespace fs = std::filesystem;
 constexpr std::string_view kRecipeElement = "<script type=\"application/json\" id=\"recipe\">";
 constexpr std::string_view kNoRecipe = "null";
 
-fs::path installed_page() {
+// The page of the first prefix that has one; without any, where the first prefix should have it.
+fs::path installed_page(const std::vector<fs::path>& prefixes) {
   if (const char* const stated = std::getenv("ASTROLITH_PAGE")) return stated;
-  std::error_code none;
-  return fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/astrolith/page.html";
+  const auto page = [](const fs::path& prefix) { return prefix / "share/astrolith/page.html"; };
+  const auto has_page = [&](const fs::path& prefix) {
+    std::error_code none;
+    return fs::is_regular_file(page(prefix), none);
+  };
+  const auto found = std::find_if(prefixes.begin(), prefixes.end(), has_page);
+  return page(found == prefixes.end() ? prefixes.front() : *found);
 }
 
-std::string page_text() {
-  const fs::path file = installed_page();
+std::string page_text(const std::vector<fs::path>& prefixes) {
+  const fs::path file = installed_page(prefixes);
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   const std::size_t at = text.find(kRecipeElement);
@@ -52,24 +59,30 @@ Recipe without_files(Recipe recipe) {
 
 std::vector<fs::path> page_files(const std::string& folder) { return {fs::path(folder) / "index.html"}; }
 
-void check_page(const Recipe& recipe, const fs::path& file) {
+fs::path program_prefix() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none).parent_path().parent_path();
+}
+
+void check_page(const Recipe& recipe, const fs::path& file, const std::vector<fs::path>& prefixes) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     const Layer& layer = recipe.layers[i];
     if (image_of(layer) == nullptr || std::holds_alternative<ReliefLayer>(layer)) continue;
     throw InputError(file.string() + ": layers[" + std::to_string(i) +
                      "].image: is a file, which a page cannot read; leave out --page, or this layer");
   }
-  page_text();
+  page_text(prefixes);
 }
 
-void write_page(const Recipe& recipe, const fs::path& file, const fs::path& folder) {
+void write_page(const Recipe& recipe, const fs::path& file, const fs::path& folder,
+                const std::vector<fs::path>& prefixes) {
   const std::string name = file.stem().string() + ".astro";
   const nlohmann::ordered_json held = {{"name", name},
                                        {"bytes", base64_text(recipe_to_compact(without_files(recipe)))}};
   std::string element = held.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
   for (std::size_t at = 0; (at = element.find('<', at)) != std::string::npos;)
     element.replace(at, 1, "\\u003c");
-  std::string text = page_text();
+  std::string text = page_text(prefixes);
   text.replace(text.find(kRecipeElement) + kRecipeElement.size(), kNoRecipe.size(), element);
   make_output_folder(folder);
   write_file(page_files(folder.string()).front(), text);

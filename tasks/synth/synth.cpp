@@ -1,13 +1,14 @@
 #include "tasks/synth/synth.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <future>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/io/mesh_io.h"
@@ -15,6 +16,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "recipe/recipe_json.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "tasks/description/variation_reference.h"
 #include "tasks/job/density_question.h"
@@ -36,7 +38,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SynthOptions {
-  fs::path recipe;
+  SynthCaller caller;
+  fs::path recipe = "recipe";  // the caller's recipe has this name
   fs::path base;
   std::string base_lengths = "units";
   BodyRequest body;  // its recipe is the one that is made
@@ -53,9 +56,11 @@ struct SynthOptions {
 };
 
 void declare_options(Job& job, SynthOptions& options) {
-  job.options.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
-      .required()
-      .reads(recipe_and_images);
+  Option recipe =
+      job.options.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
+          .default_text("")
+          .reads(recipe_and_images);
+  if (options.caller.recipe.empty()) recipe.required();
   job.options
       .add_option("-o,--output", options.body.output,
                   "the mesh: " + written_mesh_words() +
@@ -165,8 +170,20 @@ void change_reliefs(Recipe& recipe, const fs::path& file, std::string_view does,
       fmt::format("{}: layers: hold no relief, whose heights {}; fit_shape writes one", file.string(), does));
 }
 
+// The recipe of the file, or of the caller. The images of the caller's recipe must not be written over.
+Recipe loaded_input(const Job& job, const SynthOptions& options) {
+  if (options.caller.recipe.empty()) return load_recipe(options.recipe);
+  Recipe recipe = parse_recipe(options.caller.recipe, options.recipe.string());
+  load_images(recipe, {}, options.recipe.string());
+  for (Layer& layer : recipe.layers) {
+    const NamedImage* const named = image_of(layer);
+    if (named != nullptr && !named->image.empty()) job.options.require_not_written(named->image);
+  }
+  return recipe;
+}
+
 Recipe read_input(const Job& job, const SynthOptions& options) {
-  Recipe recipe = load_recipe(options.recipe);
+  Recipe recipe = loaded_input(job, options);
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
                          base_lengths_of(options.base_lengths));
@@ -259,7 +276,9 @@ void synthesize(Job& job, const SynthOptions& options) {
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
   require_body(recipe, options.recipe);
-  if (!options.page.empty()) check_page(recipe, options.recipe);  // before a variation is searched for
+  const std::vector<fs::path>& prefixes = options.caller.prefixes;
+  if (!options.page.empty())
+    check_page(recipe, options.recipe, prefixes);  // before a variation is searched for
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
   const BodyRequest& body = options.body;
   const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
@@ -282,14 +301,18 @@ void synthesize(Job& job, const SynthOptions& options) {
   }
   const Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
   if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
-  if (!options.page.empty()) write_page(made, options.recipe, options.page);
+  if (!options.page.empty()) write_page(made, options.recipe, options.page, prefixes);
   if (body.output.empty() && !body.mesh.size.only_predict) return;
   make_mesh(job, body.mesh, made, file, body.output);
 }
 
 }  // namespace
-JobWork declare_synth(Job& job) {
+
+JobWork declare_synth(Job& job) { return declare_called_synth(job, {"", {program_prefix()}}); }
+
+JobWork declare_called_synth(Job& job, SynthCaller caller) {
   const auto options = std::make_shared<SynthOptions>();
+  options->caller = std::move(caller);
   declare_options(job, *options);
   return [&job, options] {
     if (!options->members.folder.empty()) options->body.output = options->members.folder / "{member}.ply";

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "numerics/files/sha256.h"
+#include "tasks/job/device_option.h"
 #include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
@@ -145,6 +146,44 @@ TEST_F(SynthMembers, AnotherSetIsNotWrittenOverThisOne) {
   EXPECT_TRUE(has(other.errors, "has members of another recipe, or made with other options"));
   EXPECT_EQ(text("set/body_0000000.ply"), mesh);
   EXPECT_EQ(text("set/set.jsonl"), lines);
+}
+
+// The bodies of a set are like one target: another mesh under the target's name makes another set.
+TEST_F(SynthMembers, AnotherTargetIsAnotherSet) {
+  write("r.json", kTwoSpheres);
+  succeed("r.json -o target.ply --resolution 16");
+  expect_made(make("0:1", "--vary 0.3 --target target.ply"), "1 made");
+  std::filesystem::copy(folder_ / "target.ply", folder_ / "copy.ply");
+  expect_made(make("0:1", "--vary 0.3 --target copy.ply"), "0 made, 1 already there");
+  succeed("r.json -o target.ply --resolution 12");
+  const Outcome other = make("0:1", "--vary 0.3 --target target.ply");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(has(other.errors, "has members of another recipe, or made with other options"));
+}
+
+// Members have copies of the options, and work beside each other.
+TEST_F(SynthMembers, AGpuThatFailsIsToldOnceAndNotTriedAgain) {
+  const auto declare = [](Job& job) -> JobWork {
+    const auto device = std::make_shared<DeviceOption>();
+    device->add_to(job.options);
+    return [&job, device] {
+      std::vector<DeviceOption> of_members(3, *device);
+      for (int failing = 0; failing < 2; ++failing) {
+        JobPart member(job);
+        try {
+          throw DeviceError("GPU: failure " + std::to_string(failing));
+        } catch (const DeviceError& error) {
+          EXPECT_FALSE(of_members[static_cast<std::size_t>(failing)].after_failure(member, error));
+        }
+      }
+      JobPart next(job);
+      EXPECT_FALSE(of_members[2].has_gpu());
+      EXPECT_EQ(of_members[2].choose(next).words, "computed on the CPU: the GPU failed before");
+    };
+  };
+  const Outcome outcome = testing::run_job("synth", declare, {"--device", "auto"}, folder_.path());
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.errors, "GPU: failure 0; the CPU does the work from its beginning\n");
 }
 
 TEST_F(SynthMembers, MembersOfAnotherVersionAreNotContinued) {

@@ -44,6 +44,25 @@ TEST_F(SynthPage, IsWrittenBesideAMesh) {
   EXPECT_FALSE(text("out/index.html").empty());
 }
 
+// Python hands over the text of a recipe. The page is sought in the caller's prefixes.
+TEST_F(SynthPage, OfACallersRecipeHasItsNameAndLiesInAPrefix) {
+  unsetenv("ASTROLITH_PAGE");
+  std::filesystem::create_directories(folder_ / "second/share/astrolith");
+  write("second/share/astrolith/page.html", kBefore + "null" + kAfter);
+  const auto called = [&](std::vector<std::filesystem::path> prefixes, const std::string& page) {
+    const auto declare = [&](Job& job) {
+      return declare_called_synth(job, {text("r.json"), std::move(prefixes)});
+    };
+    return testing::run_job("synth", declare, {"--page", page}, folder_.path());
+  };
+  const testing::Outcome found = called({folder_ / "first", folder_ / "second"}, "out");
+  EXPECT_EQ(found.status, 0) << found.errors;
+  EXPECT_EQ(held("out/index.html")["name"], "recipe.astro");
+  const testing::Outcome none = called({folder_ / "first", folder_ / "third"}, "other");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_TRUE(testing::has(none.errors, "first/share/astrolith/page.html is missing")) << none.errors;
+}
+
 TEST_F(SynthPage, IsRefusedWhereItIsMissingOrAnotherFile) {
   install("<html></html>");
   refuse("r.json --page out", "page.html is missing or is not the page");
