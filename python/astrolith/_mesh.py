@@ -42,6 +42,8 @@ class Mesh:
         What ``synth --summary`` states: triangles, closed, genus, components, cell, layers_left_out and more.
     colors
         (n, 3) uint8 sRGB that the layers paint; or None.
+    values
+        Other numbers of the vertices by their names, (n) float64 each: those of ``synth --gravity``.
     """
 
     vertices: npt.NDArray[Any]
@@ -56,6 +58,7 @@ class Mesh:
     legend: list[str] = dataclasses.field(default_factory=list)
     figures: Record = dataclasses.field(default_factory=Record)
     colors: Optional[npt.NDArray[np.uint8]] = None
+    values: dict[str, npt.NDArray[np.float64]] = dataclasses.field(default_factory=dict)
 
     @property
     def whole_body(self) -> bool:
@@ -286,6 +289,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
             raise ValueError("mesh.normals: are missing; labels are written with normals only")
         labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))
         elevations = _arrays.column(made.elevations, "mesh.elevations", np.float32, len(arrays.vertices))
+    values = made.values if kind["values"] and labels is None else {}
     colors = None if made.colors is None else _arrays.colors(made.colors, "mesh.colors", len(arrays.vertices))
     origin = None if made.origin is None else _arrays.vector(made.origin, "mesh.origin")
     unit = _arrays.text(made.length_unit, "mesh.length_unit")
@@ -304,6 +308,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         made.whole_body,
         [_arrays.text(line, "mesh.legend") for line in made.legend] if labels is not None else [],
         uv,
+        [(name, _arrays.column(column, f"mesh.values.{name}", np.float64, len(arrays.vertices))) for name, column in values.items()],
     )
     if unit != "km" and unit in METRES and not kind.unit:
         _warn(f'{file}: a {kind.extension} states no unit; where it is read, pass unit="{unit}"')

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-from astrolith import _arrays, _jobs, _options, _synthesis
+from astrolith import _jobs, _synthesis
+from astrolith._meshing import call
 from astrolith._options import Progress
-from astrolith._recipe import Record, RecipeLike, json_of
+from astrolith._recipe import Record, RecipeLike
 
 _OPTIONS = _synthesis.options_of_synth()
 
@@ -37,14 +37,7 @@ def synth(recipe: RecipeLike, *, threads: int = 0, progress: Progress = None, **
     RuntimeError
         A file cannot be written, or `progress` returned False.
     """
-    given = _jobs.words("synth", _OPTIONS, options)
-    workers = _options.threads(threads)
-    text = ""
-    if _arrays.is_file_name(recipe):
-        given.append(("recipe", [_arrays.file_name(recipe, "recipe")]))
-    else:
-        text = json_of(recipe)[0]
-    return _jobs.figures_of(_synthesis.synth(given, text, [sys.prefix, "/usr/local", "/usr"], workers, progress))
+    return _jobs.figures_of(call(_synthesis.synth, "synth", recipe, options, threads, progress))
 
 
 _jobs.document(synth, _OPTIONS)

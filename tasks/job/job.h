@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "numerics/processor_clock.h"
 #include "numerics/progress.h"
 #include "tasks/job/option_table.h"
 
@@ -58,6 +59,8 @@ class Job {
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  // Seconds of all processors since the work began.
+  double processor_seconds() const { return astrolith::processor_seconds() - processor_start_; }
   StageProgress stages() const {
     return [this](const std::string& stage) { return progress(stage); };
   }
@@ -75,10 +78,15 @@ class Job {
   };
   // A part of a job: it has the options, the seed and the clock of the whole.
   explicit Job(Whole whole)
-      : options(whole.job.options), seed(whole.job.seed), name_(whole.job.name_), start_(whole.job.start_) {}
+      : options(whole.job.options),
+        seed(whole.job.seed),
+        name_(whole.job.name_),
+        start_(whole.job.start_),
+        processor_start_(whole.job.processor_start_) {}
 
   std::string name_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double processor_start_ = astrolith::processor_seconds();
 
  private:
   std::mutex parts_mutex_;

@@ -17,6 +17,11 @@ inline std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+// A count in three characters or so: "1.2 M", "340 k".
+inline std::string rounded_count(double count) {
+  return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
+}
+
 // "31 kB", "4.2 MB", "1.3 GB".
 inline std::string byte_words(double bytes) {
   const char* unit = "GB";

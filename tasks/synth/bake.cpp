@@ -17,29 +17,27 @@
 #include "synthesis/mesh/sample_grid.h"
 #include "synthesis/picture/image_file.h"
 #include "tasks/job/output_names.h"
-#include "tasks/synth/detail_levels.h"
 
 namespace astrolith {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLeastMap = 64, kMostMap = 16384;
 // The image for which charts are padded where no maps are baked.
 constexpr int kUsualMap = 2048;
 constexpr std::array<const char*, 6> kMapWords{"normal",    "height", "occlusion",
                                                "curvature", "label",  "color"};
 
-int side_of_level(const MeshRequest& request, std::size_t level) {
-  const int side = request.bake > 0 ? request.bake : kUsualMap;
+int side_of_level(const MeshSinks& sinks, std::size_t level) {
+  const int side = sinks.bake > 0 ? sinks.bake : kUsualMap;
   return std::max(side >> level, kLeastMap);
 }
 
 // Where no maps are baked, the image is as large as the charts need.
-TextureAtlas atlas_of_level(const TriangleMesh& mesh, const MeshRequest& request, std::size_t level) {
-  const int side = side_of_level(request, level);
-  return request.bake > 0 ? make_texture_atlas(mesh, side, "--bake")
-                          : make_texture_atlas(mesh, side, "--uv", kMostMap);
+TextureAtlas atlas_of_level(const TriangleMesh& mesh, const MeshSinks& sinks, std::size_t level) {
+  const int side = side_of_level(sinks, level);
+  return sinks.bake > 0 ? make_texture_atlas(mesh, side, "--bake")
+                        : make_texture_atlas(mesh, side, "--uv", kMostMap);
 }
 
 fs::path map_file(const fs::path& output, std::size_t level, const std::string& word) {
@@ -50,16 +48,16 @@ fs::path map_file(const fs::path& output, std::size_t level, const std::string& 
 // The mesh to which rays of the occlusion go: its cells are four texels of the finest maps wide.
 class Occluder {
  public:
-  Occluder(Job& job, const BodyMeshJob& finest, double texel) {
+  Occluder(Job& job, const MeshPart& finest, double texel) {
     constexpr int kMostCells = 640;
     constexpr double kTexelsPerCell = 4.0;
     const double longest = finest.field.bounds().longest_side();
-    BodyMeshJob work = finest;
-    work.resolution =
+    MeshSpec plain = finest.spec;
+    plain.even = false;
+    const MeshPart part{plain, finest.recipe, finest.file, finest.region, finest.field, 0, finest.device};
+    const int cells =
         std::clamp(static_cast<int>(longest / (kTexelsPerCell * texel)), kMinResolution, kMostCells);
-    work.even = false;
-    if (!lacking_on_gpu(work.field, work.region, work.resolution).empty()) work.device = MeshingDevice::kCpu;
-    cell_ = make_body_mesh(work, collector_, job.stages()).statistics.step;
+    cell_ = make_body_mesh(part.with_cells(cells), collector_, job.stages()).statistics.step;
   }
 
   BakeOccluder get() const { return {collector_.mesh, cell_}; }
@@ -110,12 +108,11 @@ std::optional<SkinMap::Use> use_of(const std::string& word) {
   return std::nullopt;
 }
 
-void add_maps(Job& job, const SkinSources& sources, std::size_t level, const BakedMaps& maps,
-              MeshSkin& skin) {
+void add_maps(Job& job, const fs::path& mesh, std::size_t level, const BakedMaps& maps, MeshSkin& skin) {
   nlohmann::ordered_json figures = figures_of_maps(maps);
   auto files = nlohmann::ordered_json::object();
   for (EncodedMap& map : encoded_maps(maps)) {
-    const fs::path file = map_file(sources.output, level, map.word);
+    const fs::path file = map_file(mesh, level, map.word);
     write_file(file, map.png);
     files[map.word] = file.filename().string();
     if (const auto use = use_of(map.word))
@@ -134,67 +131,24 @@ nlohmann::ordered_json figures_of_atlas(const TextureAtlas& atlas, const AtlasSt
 
 }  // namespace
 
-void declare_bake_options(Job& job, MeshRequest& request) {
-  Option uv =
-      job.options
-          .add_option(
-              "--uv", request.uv,
-              "texture coordinates in a .glb or .obj. longitude, which --uv means by itself: u = 1/2 + "
-              "longitude / 360 degrees, v from the north pole to the south; the 180th meridian cuts the "
-              "triangles that cross it. charts: an atlas of charts of one scale, none of which overlap, "
-              "padded by 4 texels of a map of 2048, or of --bake")
-          .check(one_of({"longitude", "charts"}))
-          .implied("longitude")
-          .default_text("");
-  job.options
-      .add_option("--bake", request.bake,
-                  "with --uv charts: maps of N x N texels that show the whole recipe on this mesh, however "
-                  "coarse it is. Each texel is carried along the mesh's normal to the surface. Files beside "
-                  "the mesh: rock_normal.png (tangent space, MikkTSpace, y up), _height (16 bits), "
-                  "_occlusion, _curvature, _label, and _color where a layer paints; a .glb holds normals, "
-                  "occlusion and colours in its material. Maps of each level of --lod have half of the side, "
-                  "64 at least")
-      .check(in_range(kLeastMap, kMostMap))
-      .placeholder("N")
-      .default_text("")
-      .needs(uv);
-  for (const char* of_part : {"--tile", "--patch", "--points"}) {
-    job.options.option("--bake").excludes(job.options.option(of_part));
-  }
-}
-
-void check_bake(const MeshRequest& request, const Recipe& recipe, const fs::path& file, bool is_cut) {
-  if (request.bake == 0) return;
-  if (!request.has_charts()) throw InputError("--bake: maps lie on charts; add --uv charts");
-  if (is_cut) throw InputError("--bake: is of the whole body; leave out --tile and --patch");
-  if (recipe.erosion) {
-    throw InputError(
-        file.string() +
-        ": erosion: moves the mesh away from the layers that maps show; leave out --bake, or take "
-        "erosion out of the recipe");
-  }
-}
-
-std::vector<fs::path> map_files(const MeshRequest& request, const fs::path& output) {
+std::vector<fs::path> map_files(const fs::path& mesh, const MeshSinks& sinks) {
   std::vector<fs::path> files;
-  for (int level = 0; request.bake > 0 && level < request.levels; ++level) {
-    for (const char* word : kMapWords)
-      files.push_back(map_file(output, static_cast<std::size_t>(level), word));
+  for (int level = 0; sinks.bake > 0 && level < sinks.levels; ++level) {
+    for (const char* word : kMapWords) files.push_back(map_file(mesh, static_cast<std::size_t>(level), word));
   }
   return files;
 }
 
-void add_skins(Job& job, const MeshRequest& request, const SkinSources& sources,
+void add_skins(Job& job, const MeshSinks& sinks, const MeshPart& part, const SurfaceColors* colors,
                std::vector<MeshLevel>& levels) {
-  const BodyMeshJob& finest = sources.made_by;
   std::optional<Occluder> occluder;
   std::optional<SurfaceLabels> labels;
   // All atlases come first: charts that do not fit leave no maps behind.
   std::vector<TextureAtlas> atlases;
   for (std::size_t level = 0; level < levels.size(); ++level)
-    atlases.push_back(atlas_of_level(*levels[level].mesh, request, level));
+    atlases.push_back(atlas_of_level(*levels[level].mesh, sinks, level));
   job.summary["charts"] = nlohmann::ordered_json::array();
-  if (request.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
+  if (sinks.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
   for (std::size_t level = 0; level < levels.size(); ++level) {
     const TriangleMesh& mesh = *levels[level].mesh;
     const TextureAtlas& atlas = atlases[level];
@@ -202,11 +156,12 @@ void add_skins(Job& job, const MeshRequest& request, const SkinSources& sources,
     skin.tangents = vertex_tangents(mesh, skin.coordinates);
     const AtlasStretch stretch = atlas_stretch(mesh, skin.coordinates);
     job.summary["charts"].push_back(figures_of_atlas(atlas, stretch));
-    if (request.bake > 0) {
-      if (!occluder) occluder.emplace(job, finest, atlas.texel);
-      if (!labels) labels.emplace(finest.recipe, finest.field);
-      const BakeSources all{finest.field, *labels, sources.colors, occluder->get()};
-      add_maps(job, sources, level, bake_maps(all, {mesh, atlas, skin.tangents}, job.progress("bake")), skin);
+    if (sinks.bake > 0) {
+      if (!occluder) occluder.emplace(job, part, atlas.texel);
+      if (!labels) labels.emplace(part.recipe, part.field);
+      const BakeSources all{part.field, *labels, colors, occluder->get()};
+      const BakedMaps maps = bake_maps(all, {mesh, atlas, skin.tangents}, job.progress("bake"));
+      add_maps(job, sinks.file, level, maps, skin);
     }
     levels[level].skin = std::make_shared<const MeshSkin>(std::move(skin));
   }

@@ -57,18 +57,14 @@ void check_levels(int levels, int resolution) {
                   levels - 1, resolution_of(levels - 1, resolution)));
 }
 
-std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int levels,
+std::vector<DetailLevel> coarser_levels(Job& job, const MeshPart& part, int levels,
                                         const TriangleMesh& mesh) {
   constexpr std::int64_t kSamples = 100000;  // as compare takes
   std::vector<DetailLevel> coarser;
   if (levels < 2) return coarser;
   const SurfaceTree tree(mesh);
   for (int k = 1; k < levels; ++k) {
-    BodyMeshJob level = finest;
-    level.resolution = resolution_of(k, finest.resolution);
-    if (!lacking_on_gpu(level.field, level.region, level.resolution).empty()) {
-      level.device = MeshingDevice::kCpu;  // its blocks are larger than those of the finest mesh
-    }
+    const MeshPart level = part.with_cells(resolution_of(k, part.resolution));
     MeshCollector collector;
     make_body_mesh(level, collector, job.stages());
     const SurfaceTree of_level(collector.mesh);

@@ -27,10 +27,9 @@ std::vector<std::filesystem::path> level_files(const std::filesystem::path& outp
 // Throws InputError where the coarsest of so many levels would have fewer cells than a mesh needs.
 void check_levels(int levels, int resolution);
 
-// Makes levels 1 .. levels - 1 of the mesh that `finest` made: each has half of the cells along a side of the
-// level before. Throws what make_body_mesh() and surface_distance() throw.
-std::vector<DetailLevel> coarser_levels(Job& job, const BodyMeshJob& finest, int levels,
-                                        const TriangleMesh& mesh);
+// Makes levels 1 .. levels - 1 of the part's mesh: each has half of the cells along a side of the level
+// before. Throws what make_body_mesh() and surface_distance() throw.
+std::vector<DetailLevel> coarser_levels(Job& job, const MeshPart& part, int levels, const TriangleMesh& mesh);
 
 // Writes the coarser levels beside the mesh, or all levels into one .glb, and reports them. `levels` has the
 // meshes of all, the finest first, with what lies on them; the finest has `resolution` cells.

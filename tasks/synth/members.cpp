@@ -21,7 +21,6 @@
 #include "numerics/memory_use.h"
 #include "numerics/own_loops.h"
 #include "numerics/parallel_for.h"
-#include "numerics/processor_clock.h"
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
@@ -30,7 +29,6 @@
 #include "tasks/job/words.h"
 #include "tasks/synth/manifest.h"
 #include "tasks/synth/member_differences.h"
-#include "tasks/synth/mesh_region.h"
 
 namespace astrolith {
 namespace {
@@ -77,35 +75,20 @@ fs::path numbered(const fs::path& pattern, std::uint64_t member) {
   return name;
 }
 
-struct NamedFile {
-  const char* option;
-  fs::path* name;
-};
-
-// All files that a body may have, but the frame of a height map, in the order of the manifest's lines.
-std::vector<NamedFile> files_of(BodyRequest& body) {
-  return {{"--output", &body.output},
-          {"--preview", &body.mesh.preview.file},
-          {"--preview-maps", &body.mesh.preview.maps},
-          {"--height-map", &body.mesh.height_map},
-          {"--hazard-map", &body.mesh.hazard.file},
-          {"--feature-list", &body.mesh.landforms},
-          {"--write-recipe", &body.recipe}};
-}
-
-BodyRequest numbered(BodyRequest body, std::uint64_t member) {
-  for (const NamedFile& file : files_of(body)) *file.name = numbered(*file.name, member);
-  return body;
+// The mesh job of one member.
+MeshJob numbered(MeshJob mesh, std::uint64_t member) {
+  for (const NamedFile& file : files_of(mesh.sinks)) *file.name = numbered(*file.name, member);
+  mesh.sinks.member = member;
+  return mesh;
 }
 
 // The names of the files of a member.
-std::vector<fs::path> names_of(BodyRequest member) {
+std::vector<fs::path> names_of(MeshSinks sinks) {
   std::vector<fs::path> names;
-  for (const NamedFile& file : files_of(member)) {
+  for (const NamedFile& file : files_of(sinks)) {
     if (file.name->empty()) continue;
     names.push_back(*file.name);
-    if (file.name == &member.mesh.height_map)
-      names.push_back(fs::path(*file.name).replace_extension(".json"));
+    if (file.name == &sinks.height_map) names.push_back(fs::path(*file.name).replace_extension(".json"));
   }
   return names;
 }
@@ -131,9 +114,9 @@ std::string hash_of_family(const Job& job, const Recipe& recipe) {
 
 class MemberMaker {
  public:
-  MemberMaker(Job& job, const MembersRequest& request, const BodyRequest& body, const MemberSource& source)
+  MemberMaker(Job& job, const MembersRequest& request, const MeshJob& mesh, const MemberSource& source)
       : job_(job),
-        body_(body),
+        mesh_(mesh),
         source_(source),
         file_(request.manifest),
         manifest_(request.manifest),
@@ -157,21 +140,21 @@ class MemberMaker {
   }
 
   bool is_finished(std::uint64_t member) const {
-    return manifest_.has(member, family_, names_of(numbered(body_, member)));
+    return manifest_.has(member, family_, names_of(numbered(mesh_, member).sinks));
   }
 
   // Makes a member's files. Returns its line of the manifest.
   Json make(std::uint64_t number) const {
     make_folders(number);
     const auto start = std::chrono::steady_clock::now();
-    BodyRequest body = numbered(body_, number);
+    MeshJob mesh = numbered(mesh_, number);
     JobPart job(job_);
     const FamilyMember member = source_.draw(job, number);
     Json line = {
         {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
     for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
-    if (const auto& family = source_.recipe.family; family && !body.mesh.preview.file.empty()) {
-      PictureOptions& look = body.mesh.preview.look;
+    if (const auto& family = source_.recipe.family; family && !mesh.sinks.preview.file.empty()) {
+      PictureOptions& look = mesh.sinks.preview.look;
       if (family->any_view && !look.chooses_view(job)) {
         look.look_from(member.view);
         line["view"] = json_of(member.view);
@@ -181,15 +164,15 @@ class MemberMaker {
         line["sun"] = json_of(member.sun);
       }
     }
-    if (!body.output.empty()) make_mesh(job, body.mesh, member.recipe, source_.file, body.output);
+    if (mesh.sinks.wanted()) make_mesh(job, mesh, member.recipe, source_.file);
     for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
                                "closed", "manifold", "genus", "components"}) {
       if (job.summary.contains(figure)) line[figure] = job.summary[figure];
     }
-    if (!body.recipe.empty()) write_loaded_recipe(member.recipe, body.recipe);
+    if (!mesh.sinks.recipe.empty()) write_loaded_recipe(member.recipe, mesh.sinks.recipe);
     if (file_.empty()) return line;
     std::vector<ManifestFile> written;
-    for (const fs::path& name : names_of(body)) written.push_back(manifest_.file_of(name));
+    for (const fs::path& name : names_of(mesh.sinks)) written.push_back(manifest_.file_of(name));
     line["files"] = to_json(written);
     line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -202,7 +185,7 @@ class MemberMaker {
   }
 
   void make_folders(std::uint64_t number) const {
-    for (const fs::path& name : names_of(numbered(body_, number))) {
+    for (const fs::path& name : names_of(numbered(mesh_, number).sinks)) {
       if (name.has_parent_path()) make_output_folder(name.parent_path());
     }
   }
@@ -214,7 +197,7 @@ class MemberMaker {
   }
 
   Job& job_;
-  const BodyRequest& body_;
+  const MeshJob& mesh_;
   const MemberSource& source_;
   fs::path file_;  // the manifest; empty = none
   Manifest manifest_;
@@ -285,14 +268,14 @@ class RangeMaker {
 
 // How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
 // is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
-int members_at_once(const MeshRequest& mesh, std::uint64_t members) {
+int members_at_once(const MeshJob& mesh, std::uint64_t members) {
   constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOnGpu = 1.5e9;
   constexpr double kTrianglesOfSquare =
       5.0;  // of a mesh for the square of its resolution, with some roughness
-  const MeshSizeRequest& size = mesh.size;
+  const MeshSpec& spec = mesh.spec;
   const double triangles =
-      size.triangles > 0.0 ? size.triangles : kTrianglesOfSquare * size.resolution * size.resolution;
-  if (triangles > kMostTriangles || size.max_memory_gb > 0.0) return 1;
+      spec.triangles > 0.0 ? spec.triangles : kTrianglesOfSquare * spec.resolution * spec.resolution;
+  if (triangles > kMostTriangles || mesh.max_memory_gb > 0.0) return 1;
   double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
   most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles));
   if (mesh.device.has_gpu())
@@ -312,12 +295,12 @@ std::vector<std::uint64_t> sampled_members(const MemberRange& range, std::uint64
 
 // The meshes of some members that are there. Throws InputError for files that cannot be read back, or would
 // take longer to compare than to make.
-std::vector<TriangleMesh> some_meshes(const BodyRequest& body, const MemberRange& range) {
+std::vector<TriangleMesh> some_meshes(const fs::path& pattern, const MemberRange& range) {
   constexpr std::uint64_t kFewest = 4;
   constexpr std::uintmax_t kLargestCompared = 32 << 20;  // a .ply of a million triangles and more
   std::vector<TriangleMesh> meshes;
   for (const std::uint64_t number : sampled_members(range, kFewest)) {
-    const fs::path file = numbered(body, number).output;
+    const fs::path file = numbered(pattern, number);
     if (!fs::is_regular_file(file)) continue;
     if (!has_readable_extension(file)) throw InputError("no reader for " + mesh_extension(file));
     if (fs::file_size(file) > kLargestCompared) throw InputError("files of more than 32 MB");
@@ -327,10 +310,11 @@ std::vector<TriangleMesh> some_meshes(const BodyRequest& body, const MemberRange
 }
 
 // Says how much some members differ, or why it does not. The set is made by then, whatever happens here.
-void say_differences(Job& job, const BodyRequest& body, const MemberRange& range) {
-  if (body.output.empty() || body.mesh.points || !body.mesh.tile.empty() || !body.mesh.patch.empty()) return;
+void say_differences(Job& job, const MeshJob& mesh, const MemberRange& range) {
+  const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
+  if (sinks.file.empty() || spec.points || !spec.tile.empty() || !spec.patch.empty()) return;
   try {
-    const Json figures = member_differences(some_meshes(body, range), job.progress("differences"));
+    const Json figures = member_differences(some_meshes(sinks.file, range), job.progress("differences"));
     if (figures.is_null()) return;
     job.summary["members"]["differences"] = figures;
     job.say(words_of_differences(figures));
@@ -376,10 +360,10 @@ void declare_members_options(Job& job, MembersRequest& request) {
       .writes();
 }
 
-void check_members(const MembersRequest& request, BodyRequest body) {
+void check_members(const MembersRequest& request, MeshJob mesh) {
   const bool many = !request.range.empty();
   if (many) parse_range(request.range);
-  for (const auto& [option, file] : files_of(body)) {
+  for (const auto& [option, file] : files_of(mesh.sinks)) {
     if (file->empty()) continue;
     if (many && !has_mark(*file))
       throw InputError(
@@ -392,63 +376,64 @@ void check_members(const MembersRequest& request, BodyRequest body) {
           ": {member} stands for the number of each body of --members A:B; add --members, or leave "
           "{member} out");
   }
+  const MeshSinks& sinks = mesh.sinks;
   const bool pictures =
-      !body.mesh.preview.file.empty() || !body.mesh.preview.maps.empty() || !body.mesh.landforms.empty();
-  if (many && body.output.empty() && !body.recipe.empty() && pictures)
+      !sinks.preview.file.empty() || !sinks.preview.maps.empty() || !sinks.landforms.empty();
+  if (many && sinks.file.empty() && !sinks.recipe.empty() && pictures)
     throw InputError(
         "--write-recipe without -o keeps recipes alone; leave out --preview, --preview-maps and "
         "--feature-list, "
         "or add -o");
 }
 
-void make_members(Job& job, const MembersRequest& request, const BodyRequest& body,
-                  const MemberSource& source) {
+void make_members(Job& job, const MembersRequest& request, const MeshJob& mesh, const MemberSource& source) {
   const MemberRange range = parse_range(request.range);
   const std::string set = request.manifest.empty() ? "members" : request.manifest.string();
-  if (!body.output.empty()) check_mesh_request(body.mesh, source.recipe, source.file);
+  if (mesh.sinks.wanted()) check_mesh(mesh, source.recipe, source.file);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
-  const MemberMaker maker(job, request, body, source);
+  const MemberMaker maker(job, request, mesh, source);
   maker.require_same_set();
   // Folders are made, and what cannot be written is refused, before any work.
   maker.make_folders(range.begin);
-  const BodyRequest first = numbered(body, range.begin);
-  check_mesh_outputs(job, first.mesh, first.output);
+  const MeshJob first = numbered(mesh, range.begin);
+  check_mesh_outputs(job, first);
   prepare_summary(job);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
     job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
                         counted(static_cast<std::size_t>(unreadable), "line")));
   }
-  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(body.mesh, range.end - range.begin));
-  for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
+  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(mesh, range.end - range.begin));
+  for (const fs::path& name : names_of(first.sinks)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
   job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
   job.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
                       tally.failed, range.end - range.begin,
                       job.stopped() ? "; stopped, the same command goes on" : ""));
-  if (!job.stopped() && tally.failed == 0) say_differences(job, body, range);
+  if (!job.stopped() && tally.failed == 0) say_differences(job, mesh, range);
 }
 
-void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
+void predict_members(Job& job, const MembersRequest& request, const MeshJob& asked,
                      const MemberSource& source) {
-  check_mesh_request(body.mesh, source.recipe, source.file);
-  const fs::path output = body.output.empty() && body.recipe.empty() ? "{member}.ply" : body.output;
-  if (!output.empty()) check_mesh_name(body.mesh, output);
+  MeshJob mesh = asked;
+  check_mesh(mesh, source.recipe, source.file);
+  if (mesh.sinks.file.empty() && mesh.sinks.recipe.empty()) mesh.sinks.file = "{member}.ply";
+  if (!mesh.sinks.file.empty()) check_mesh_name(mesh, mesh.sinks.file);
   prepare_summary(job);
   const MemberRange range = parse_range(request.range);
   const std::vector<std::uint64_t> numbers = sampled_members(range, 2);
   const std::uint64_t members = range.end - range.begin;
   const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
-  const int at_once = members_at_once(body.mesh, members);
+  const int at_once = members_at_once(mesh, members);
   const double start = job.seconds();
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
-    const double on_clock = job.seconds(), of_processor = processor_seconds(),
+    const double on_clock = job.seconds(), of_processor = job.processor_seconds(),
                  held = static_cast<double>(resident_bytes());
     JobPart part(job);
     const Recipe member = source.draw(part, number).recipe;
-    if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
-    if (output.empty()) continue;
-    make_mesh(part, body.mesh, member, source.file, output);
+    if (!mesh.sinks.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
+    if (mesh.sinks.file.empty()) continue;
+    make_mesh(part, mesh, member, source.file);
     const Json& figures = part.summary["predicted"];
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();

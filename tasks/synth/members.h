@@ -17,14 +17,6 @@ struct MembersRequest {
   std::filesystem::path folder;    // of their meshes; empty = as the names of the files say
 };
 
-// What is made of one body, and its files. Of members, "{member}" in a name stands for the member's number in
-// seven digits or more.
-struct BodyRequest {
-  MeshRequest mesh;
-  std::filesystem::path output;  // the mesh; empty = none
-  std::filesystem::path recipe;  // empty = none
-};
-
 // Where members come from.
 struct MemberSource {
   const Recipe& recipe;               // what they have in common
@@ -37,17 +29,17 @@ void declare_members_options(Job& job, MembersRequest& request);
 
 // Throws InputError for a range without members and for a name that would be the same for all members;
 // without a range for a name that has the mark of members.
-void check_members(const MembersRequest& request, BodyRequest body);
+void check_members(const MembersRequest& request, MeshJob mesh);
 
-// Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
-// the others go on. Throws InputError where no member can be made.
-void make_members(Job& job, const MembersRequest& request, const BodyRequest& body,
-                  const MemberSource& source);
+// Makes the members of the range that the manifest does not have yet, each by the mesh job with the member's
+// number, in seven digits or more, for "{member}" in the names of its files. A member that fails is reported,
+// and the others go on. Throws InputError where no member can be made.
+void make_members(Job& job, const MembersRequest& request, const MeshJob& mesh, const MemberSource& source);
 
 // States triangles, bytes of meshes and recipes, memory and seconds of the whole range in the summary and on
 // stdout, from a few of its members. Without a name for meshes, .ply is assumed, unless recipes alone are
 // asked for.
-void predict_members(Job& job, const MembersRequest& request, const BodyRequest& body,
+void predict_members(Job& job, const MembersRequest& request, const MeshJob& mesh,
                      const MemberSource& source);
 
 }  // namespace astrolith

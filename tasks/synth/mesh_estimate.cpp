@@ -10,6 +10,7 @@
 #include "numerics/processor_clock.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {
@@ -19,24 +20,6 @@ constexpr int kSmall = 64;
 
 constexpr double kFar = 1e300;
 const Box kEverywhere{{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};
-
-SampleGrid grid_of(const ImplicitField& field, const Region& region, int resolution) {
-  return region.is_patch ? make_patch_grid(region.size, resolution)
-                         : make_sample_grid(field.bounds(), resolution);
-}
-
-// The part of space in which the mesh lies: the cube of a patch, the slab of a tile.
-Box space_of(const ImplicitField& field, const Region& region, int resolution) {
-  const Vec3d half = 0.5 * region.size * Vec3d{1, 1, 1};
-  if (region.is_patch) return {-1.0 * half, half};
-  Box slab = kEverywhere;
-  if (region.tile.count <= 1) return slab;
-  const SampleGrid grid = make_sample_grid(field.bounds(), resolution);
-  const CellWindow window = window_of_tile<kBlockCells>(grid, region.tile);
-  slab.min.z = double{grid.z(window.first[2] - 1)};
-  slab.max.z = double{grid.z(window.last[2])};
-  return slab;
-}
 
 bool has_impulses(const FieldView& view) { return view.gabor_lists.count > 0 || view.spot_lists.count > 0; }
 
@@ -68,9 +51,24 @@ MeshEstimate scaled(MeshEstimate counted, int resolution, double step) {
 
 }  // namespace
 
-MeshEstimator::MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region,
-                             MeshingDevice device)
-    : field_(field), region_(region), device_(device), base_(base_of(field, recipe)) {}
+MeshEstimator::MeshEstimator(const MeshPart& part) : part_(part), base_(base_of(part.field, part.recipe)) {}
+
+SampleGrid MeshEstimator::grid_of(int resolution) const {
+  return region_.is_patch ? make_patch_grid(region_.size, resolution)
+                          : make_sample_grid(field_.bounds(), resolution);
+}
+
+Box MeshEstimator::space_of(int resolution) const {
+  const Vec3d half = 0.5 * region_.size * Vec3d{1, 1, 1};
+  if (region_.is_patch) return {-1.0 * half, half};
+  Box slab = kEverywhere;
+  if (region_.tile.count <= 1) return slab;
+  const SampleGrid grid = grid_of(resolution);
+  const CellWindow window = window_of_tile<kBlockCells>(grid, region_.tile);
+  slab.min.z = double{grid.z(window.first[2] - 1)};
+  slab.max.z = double{grid.z(window.last[2])};
+  return slab;
+}
 
 void MeshEstimator::make_coarse(int cells) {
   if (cells <= coarse_cells_) return;
@@ -90,7 +88,7 @@ ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, 
   const double reach = has_impulses(view) ? std::max(coarse_step_, field_.height_bound()) : coarse_step_;
   // The impulses of columns that were probed before have been drawn.
   const bool twice = view.gabor_lists.count > 0 && count > most_probes_;
-  const ProbedMesh mesh{surface, grid_of(field_, region_, resolution).step, reach, twice};
+  const ProbedMesh mesh{surface, grid_of(resolution).step, reach, twice};
   most_probes_ = std::max(most_probes_, count);
   const ProbeFigures figures =
       region_.is_patch ? probe_surface(PatchField(field_, region_.center, region_.axes), mesh, count)
@@ -103,7 +101,7 @@ ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, 
 // What `count` probes find, or what as many found at cells of nearly this size.
 ProbeFigures MeshEstimator::probe_or_known(const ProbedSurface& surface, int resolution, int count) {
   constexpr double kNear = 0.05;
-  const double ratio = last_.step / grid_of(field_, region_, resolution).step;
+  const double ratio = last_.step / grid_of(resolution).step;
   if (region_.tile.count > 1 || last_.count < count || std::fabs(ratio - 1.0) > kNear)
     return probe(surface, resolution, count);
   ProbeFigures figures = last_.figures;
@@ -114,9 +112,7 @@ ProbeFigures MeshEstimator::probe_or_known(const ProbedSurface& surface, int res
 MeshEstimate MeshEstimator::made_at(int resolution) {
   MeshCollector collector;
   const double start = processor_seconds();
-  const bool on_gpu = device_ == MeshingDevice::kGpu && lacking_on_gpu(field_, region_, resolution).empty();
-  const MeshStatistics made = mesh_region(field_, region_, resolution, collector, {},
-                                          on_gpu ? MeshingDevice::kGpu : MeshingDevice::kCpu);
+  const MeshStatistics made = mesh_part(part_.with_cells(resolution), collector, {});
   evaluations_ += double(made.evaluations);
   coarse_ = std::move(collector.mesh);
   coarse_cells_ = 0;  // the next estimate makes another one
@@ -125,22 +121,21 @@ MeshEstimate MeshEstimator::made_at(int resolution) {
                         double(made.active_blocks)};
   estimate.seconds = processor_seconds() - start;
   estimate.own_evaluations = evaluations_;
-  set_layers(surface, grid_of(field_, region_, resolution), estimate);
+  set_layers(surface, grid_of(resolution), estimate);
   return estimate;
 }
 
 MeshEstimate MeshEstimator::at(int resolution) {
-  if (counted_.triangles > 0.0)
-    return scaled(counted_, resolution, grid_of(field_, region_, resolution).step);
+  if (counted_.triangles > 0.0) return scaled(counted_, resolution, grid_of(resolution).step);
   if (resolution <= kSmall) return made_at(resolution);
   // Coarse cells of eight cells, and one probe for 6,400 cells of a side of the body's box: together these
   // take some 3 % of the mesh.
   constexpr int kCoarser = 8, kFewestCells = 24, kMostCells = 64, kFewestProbes = 12, kMostProbes = 64;
   constexpr double kCellsOfProbe = 6400.0;
   make_coarse(std::clamp(resolution / kCoarser, kFewestCells, kMostCells));
-  const SampleGrid grid = grid_of(field_, region_, resolution);
+  const SampleGrid grid = grid_of(resolution);
   MeshEstimate estimate{resolution, grid.step};
-  const ProbedSurface surface(coarse_, space_of(field_, region_, resolution));
+  const ProbedSurface surface(coarse_, space_of(resolution));
   if (!surface.empty()) {
     const double wanted = double(resolution) * resolution / kCellsOfProbe;
     const int probes = std::clamp(int(wanted), kFewestProbes, kMostProbes);
@@ -204,9 +199,9 @@ int MeshEstimator::resolution_for(double triangles) {
   // directions.
   constexpr double kOfSquare = 3.0;
   make_coarse(kCells);
-  const ProbedSurface surface(coarse_, region_.is_patch ? space_of(field_, region_, kCells) : kEverywhere);
+  const ProbedSurface surface(coarse_, region_.is_patch ? space_of(kCells) : kEverywhere);
   if (surface.empty()) fail_as_too_small();
-  const double step = grid_of(field_, region_, kCells).step;
+  const double step = grid_of(kCells).step;
   double found = surface.area() * kOfSquare / (step * step);
   int resolution = nearer_resolution(kCells, found, triangles);
   if (resolution <= kMostCounted && region_.tile.count == 1)

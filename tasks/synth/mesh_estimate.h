@@ -5,7 +5,7 @@
 #include "geometry/triangle_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/surface_probes.h"
-#include "tasks/synth/mesh_region.h"
+#include "tasks/synth/body_mesh.h"
 
 namespace astrolith {
 
@@ -21,13 +21,12 @@ struct MeshEstimate {
   int probes = 0;                // 0: the mesh was made
 };
 
-// Estimates meshes of one region. The number of places it looks at depends on the resolution alone. The field
-// and the recipe must outlive it. All members throw what mesh_region throws.
+// Estimates meshes of one part of a body. The number of places it looks at depends on the resolution alone.
+// All members throw what mesh_part() throws.
 class MeshEstimator {
  public:
-  // Meshes that are made to be counted are made by the device, where it can.
-  MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region,
-                MeshingDevice device = MeshingDevice::kCpu);
+  // Meshes that are made to be counted are made by the part's device, where it can.
+  explicit MeshEstimator(const MeshPart& part);
 
   MeshEstimate at(int resolution);
 
@@ -46,13 +45,16 @@ class MeshEstimator {
   // of a mesh of other cells.
   int counted_resolution(MeshEstimate before, int resolution, double triangles);
   void make_coarse(int cells);
-  double step_at(int resolution) const;
   ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
   ProbeFigures probe_or_known(const ProbedSurface& surface, int resolution, int count);
 
-  const ImplicitField& field_;
-  Region region_;
-  MeshingDevice device_;
+  SampleGrid grid_of(int resolution) const;
+  // The part of space in which the mesh lies: the cube of a patch, the slab of a tile.
+  Box space_of(int resolution) const;
+
+  const MeshPart part_;
+  const ImplicitField& field_ = part_.field;
+  const Region& region_ = part_.region;
   ImplicitField base_;  // whose coarse mesh is made
   TriangleMesh coarse_;
   int coarse_cells_ = 0;

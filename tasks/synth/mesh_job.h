@@ -1,75 +1,95 @@
-// The part of synth that makes meshes: whole, a tile or a patch of one, to a file and a picture.
+// The part of synth that makes a mesh and what becomes of it: files, arrays, pictures, maps and tables.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/ply_stream_writer.h"
+#include "geometry/io/ply_values.h"
 #include "recipe/recipe.h"
 #include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
+#include "tasks/synth/body_mesh.h"
 #include "tasks/synth/preview.h"
 
 namespace astrolith {
 
-struct MeshSizeRequest {
-  int resolution = 256;
-  double triangles = 0.0;      // 0 = as the resolution gives
+// A mesh that is kept in memory.
+struct KeptMesh {
+  std::uint64_t member = 0;  // its number among members
+  TriangleMesh mesh;         // with colours where a layer paints
+  std::vector<VertexLabel> labels;
+  std::vector<VertexValues> values;  // of gravity
+  MeshFileInfo info;
+  std::optional<GroundPlane> plane;  // of a patch
+  nlohmann::ordered_json figures;    // the summary
+};
+
+// What becomes of a mesh. Empty names stand for nothing.
+struct MeshSinks {
+  std::filesystem::path file = {};
+  int levels = 1;  // of detail, in files
+  int bake = 0;    // side of the baked maps beside the file, texels; 0 = none
+  PreviewRequest preview = {};
+  std::filesystem::path height_map = {};        // GeoTIFF of a patch
+  std::filesystem::path hazard_map = {};        // GeoTIFF of what is dangerous to a lander on a patch
+  double footprint = 0.0;                       // side of the square of ground that the lander stands on
+  std::filesystem::path landforms = {};         // list of craters and boulders
+  std::filesystem::path recipe = {};            // what the mesh is made of
+  std::function<void(KeptMesh&&)> arrays = {};  // where a caller takes the mesh itself
+  std::uint64_t member = 0;                     // the number of the body among members
+
+  // Whether anything asks for a mesh.
+  bool wanted() const { return !file.empty() || arrays != nullptr; }
+  // Whether anything but a streamed file receives the mesh.
+  bool need_whole() const {
+    return !preview.file.empty() || has_ground_maps() || levels > 1 || arrays != nullptr;
+  }
+  bool has_ground_maps() const { return !height_map.empty() || !hazard_map.empty(); }
+  // The format of the file; of a mesh without one, that of a .ply.
+  const MeshFormat& format() const { return written_mesh_format(file.empty() ? "mesh.ply" : file); }
+};
+
+// The files of a body with the names of their options, but the frame of a height map, in the order of the
+// manifest's lines.
+struct NamedFile {
+  const char* option;
+  std::filesystem::path* name;
+};
+std::vector<NamedFile> files_of(MeshSinks& sinks);
+// What may be written for a mesh of this file name: its levels and its baked maps.
+std::vector<std::filesystem::path> mesh_files(const MeshSinks& sinks, const std::filesystem::path& file);
+
+// One request for a mesh: what it is, what becomes of it, and how it is made.
+struct MeshJob {
+  MeshSpec spec = {};
+  MeshSinks sinks = {};
+  DeviceOption device = {};
   double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
   bool only_predict = false;
 };
 
-struct GravityRequest {
-  std::vector<double> density_and_period;  // kg/m3 and hours, 0 hours = at rest; empty = no gravity
-
-  bool wanted() const { return !density_and_period.empty(); }
-};
-
-// A map of what is dangerous to a lander (tasks/synth/ground_maps.h).
-struct HazardRequest {
-  std::filesystem::path file;  // GeoTIFF of a patch; empty = none
-  double footprint = 0.0;      // side of the square of ground that a lander stands on, length units
-};
-
-struct MeshRequest {
-  MeshSizeRequest size;
-  PreviewRequest preview;
-  GravityRequest gravity;
-  std::filesystem::path height_map;  // GeoTIFF of a patch; empty = none
-  HazardRequest hazard;
-  std::filesystem::path landforms;  // list of craters and boulders; empty = none
-  std::string tile;                 // "3/16"; empty = the whole
-  std::vector<double> patch;        // centre and side; empty = the whole
-  bool aligned = false;             // the cube of the patch stands on its ground
-  double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
-  bool points = false;
-  bool labels = false;
-  std::string uv;     // texture coordinates: "longitude" or "charts"; empty = none
-  int bake = 0;       // side of the maps, texels; 0 = none
-  bool even = false;  // triangles are made more even
-  int levels = 1;     // of detail
-  DeviceOption device;
-
-  bool has_charts() const { return uv == "charts"; }
-  bool has_maps() const { return !height_map.empty() || !hazard.file.empty(); }
-};
-
-void declare_mesh_options(Job& job, MeshRequest& request);
+void declare_mesh_options(Job& job, MeshJob& mesh);
 
 // Throws InputError for options that contradict each other or the recipe, which was read from `file`.
-void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file);
+void check_mesh(const MeshJob& mesh, const Recipe& recipe, const std::filesystem::path& file);
 
-// Throws InputError for a name that no mesh of the request can have.
-void check_mesh_name(const MeshRequest& request, const std::filesystem::path& output);
+// Throws InputError for a file name that the mesh cannot have.
+void check_mesh_name(const MeshJob& mesh, const std::filesystem::path& file);
 
-// Throws InputError for an output of the request that cannot be written. An output without a name is left
-// out.
-void check_mesh_outputs(const Job& job, const MeshRequest& request, const std::filesystem::path& output);
+// Throws InputError for an output that cannot be written.
+void check_mesh_outputs(const Job& job, const MeshJob& mesh);
 
-// Writes the mesh of a recipe with a body, which was read from `file`, and its summary. Throws InputError
-// where the request makes no sense, WorkError for a mesh that does not keep its promise.
-void make_mesh(Job& job, const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file,
-               const std::filesystem::path& output);
+// Makes the mesh of a recipe with a body, which was read from `file`, and its summary, or only predicts it.
+// Throws InputError where the request makes no sense, WorkError for a mesh that does not keep its promise.
+void make_mesh(Job& job, const MeshJob& mesh, const Recipe& recipe, const std::filesystem::path& file);
 
 // The peak of memory and the hash of the output.
 void summarize_output(Job& job, const std::filesystem::path& output);

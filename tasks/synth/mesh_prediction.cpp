@@ -13,11 +13,13 @@
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
 #include "numerics/own_loops.h"
+#include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"
 #include "synthesis/gabor/gabor_bricks.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {
@@ -45,15 +47,15 @@ struct UseBytes {
   double file, memory;
 };
 
-UseBytes bytes_of_use(const PlannedMesh& mesh) {
-  const MeshUse& use = mesh.use;
-  const MeshFormat& format = written_mesh_format(mesh.output.empty() ? "mesh.ply" : mesh.output);
-  const double held = std::max(
-      {use.preview ? kPicture : 0.0, use.erosion ? kErosionTables : 0.0, use.gravity ? kGravityTables : 0.0});
+UseBytes bytes_of_use(const MeshJob& mesh, const Recipe& recipe) {
+  const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
+  const MeshFormat& format = sinks.format();
+  const double held = std::max({sinks.need_whole() ? kPicture : 0.0, recipe.erosion ? kErosionTables : 0.0,
+                                spec.gravity.empty() ? 0.0 : kGravityTables});
   // Two numbers of four bytes at half a vertex with labels, eight with gravity.
-  const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
+  const double values = spec.labels ? 4.0 : spec.gravity.empty() ? 0.0 : 16.0;
   // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
-  const double mapped = use.texture_coordinates ? 4.0 : 0.0;
+  const double mapped = spec.uv.empty() ? 0.0 : 4.0;
   if (format.streamed) return {format.file_bytes + values, held > 0.0 ? kCollected + held : 0.0};
   return {format.file_bytes + mapped, kCollected + format.kept_bytes + held + 4.0 * mapped};
 }
@@ -128,12 +130,12 @@ struct ErosionCost {
   double bytes = 0.0;  // of the gravity that it slides against, beyond its tables
 };
 
-ErosionCost cost_of_erosion(const PlannedMesh& planned, const MeshEstimate& mesh) {
+ErosionCost cost_of_erosion(const MeshPart& part, const MeshEstimate& mesh) {
   constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kCellsOfGravity = 48;
   constexpr double kMoreOfDoubling = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
-  const Erosion& erosion = *planned.recipe.erosion;
+  const Erosion& erosion = *part.recipe.erosion;
   const int cells = std::clamp(mesh.resolution / kCoarser, kFewestCells, kMostCells);
-  TriangleMesh coarse = coarse_mesh_of(planned.field, cells);
+  TriangleMesh coarse = coarse_mesh_of(part.field, cells);
   if (coarse.triangles.empty()) return {};
   std::vector<Vec3d> up;
   ErosionCost cost;
@@ -172,31 +174,31 @@ int threads_of(const PlannedRun& run) {
 
 }  // namespace
 
-MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles,
-                            const PlannedRun& run) {
+MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const PlannedRun& run) {
   const double start = processor_seconds();
   const double peak_before = static_cast<double>(peak_bytes());
-  MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region, mesh.device);
+  const MeshSpec& spec = mesh.spec;
+  MeshEstimator estimator(part);
   const MeshEstimate estimate =
-      estimator.at(triangles > 0.0 ? estimator.resolution_for(triangles) : resolution);
-  const BrickCost bricks = cost_of_bricks(mesh.field, estimate, threads_of(run));
-  const UseBytes use = bytes_of_use(mesh);
-  const ErosionCost erosion = mesh.use.erosion ? cost_of_erosion(mesh, estimate) : ErosionCost{};
-  const double gravity = mesh.use.gravity ? gravity_seconds(estimator.coarse(), estimate) : 0.0;
+      estimator.at(spec.triangles > 0.0 ? estimator.resolution_for(spec.triangles) : spec.resolution);
+  const BrickCost bricks = cost_of_bricks(part.field, estimate, threads_of(run));
+  const UseBytes use = bytes_of_use(mesh, part.recipe);
+  const ErosionCost erosion = part.recipe.erosion ? cost_of_erosion(part, estimate) : ErosionCost{};
+  const double gravity = spec.gravity.empty() ? 0.0 : gravity_seconds(estimator.coarse(), estimate);
   const double peak_after = static_cast<double>(peak_bytes());
   give_back_freed_memory();
-  const double even = mesh.use.even ? estimate.triangles : 0.0;
+  const double even = spec.even ? estimate.triangles : 0.0;
   const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
                          kRecorded * even + bricks.bytes + use.memory * estimate.triangles +
-                         kMapTexel * mesh.use.map_side * mesh.use.map_side;
+                         kMapTexel * mesh.sinks.bake * mesh.sinks.bake;
   MeshPrediction predicted;
   predicted.resolution = estimate.resolution;
   predicted.triangles = estimate.triangles;
   predicted.file_bytes = use.file * estimate.triangles;
   predicted.peak_bytes =
       std::max(run.goes_on ? peak_after : peak_before, static_cast<double>(resident_bytes()) + working);
-  const double times = mesh.use.twice ? 2.0 : 1.0;
-  const double shares = times + (mesh.use.labels ? kLabelShare : 0.0) + (mesh.use.even ? kEvenShare : 0.0);
+  const double times = spec.least_component > 0.0 ? 2.0 : 1.0;
+  const double shares = times + (spec.labels ? kLabelShare : 0.0) + (spec.even ? kEvenShare : 0.0);
   const double parallel =
       shares * estimate.seconds + times * bricks.seconds + erosion.vertical_seconds + gravity;
   const double serial = times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
@@ -210,15 +212,53 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
   return predicted;
 }
 
-void require_memory(const PlannedMesh& mesh, const MeshPrediction& predicted, double limit) {
+void require_memory(const MeshJob& mesh, const Recipe& recipe, const MeshPrediction& predicted,
+                    double limit) {
   if (predicted.peak_bytes <= limit) return;
-  const bool collected = mesh.use.even || bytes_of_use(mesh).memory > 0.0;
+  const bool collected = mesh.spec.even || bytes_of_use(mesh, recipe).memory > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
-      mesh.output.string(), rounded_count(predicted.triangles), predicted.resolution,
+      mesh.sinks.file.string(), rounded_count(predicted.triangles), predicted.resolution,
       predicted.peak_bytes / 1e9, limit / 1e9,
       collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
+}
+
+int choose_resolution(Job& job, const MeshJob& mesh, const MeshPart& part) {
+  // Below this resolution a mesh is small and quick: predicting would cost more than it tells.
+  constexpr int kWorthPredicting = 256;
+  const MeshSpec& spec = mesh.spec;
+  const bool small = mesh.max_memory_gb <= 0.0 && spec.resolution < kWorthPredicting;
+  if (spec.triangles <= 0.0 && !mesh.only_predict && small) return spec.resolution;
+
+  const MeshPrediction predicted =
+      predict_mesh(mesh, part, {thread_limit(), job.seconds(), job.processor_seconds(), !mesh.only_predict});
+  const int resolution = predicted.resolution;
+  job.summary["resolution"] = resolution;
+  job.summary["predicted"] = {{"triangles", predicted.triangles},
+                              {"file_bytes", predicted.file_bytes},
+                              {"peak_bytes", predicted.peak_bytes},
+                              {"seconds", predicted.seconds},
+                              {"processor_seconds", predicted.processor_seconds},
+                              {"own_seconds", predicted.own_seconds},
+                              {"own_evaluations", predicted.own_evaluations}};
+  require_memory(mesh, part.recipe, predicted, memory_limit(mesh.max_memory_gb));
+  const std::string line = fmt::format("resolution {}: about {} triangles, {} file, {} memory, {}",
+                                       resolution, rounded_count(predicted.triangles),
+                                       byte_words(predicted.file_bytes), byte_words(predicted.peak_bytes),
+                                       seconds_words(predicted.seconds, predicted.processor_seconds));
+  if (!mesh.only_predict) job.say(line);
+  if (mesh.only_predict && !job.quiet) job.print_result(line + "\n");
+  return resolution;
+}
+
+void fail_memory(const Job& job, const MeshJob& mesh) {
+  const double limit = memory_limit(mesh.max_memory_gb) / 1e9;
+  const double predicted = job.summary["predicted"]["peak_bytes"].get<double>() / 1e9;
+  throw InputError(fmt::format(
+      "{}: the mesh needs more than the {:.3g} GB of --max-memory, and more than the {:.3g} GB that "
+      "were predicted; lower the resolution, or raise --max-memory to {:.3g}",
+      mesh.sinks.file.string(), limit, predicted, 1.5 * std::max(limit, predicted)));
 }
 
 }  // namespace astrolith

@@ -1,36 +1,11 @@
-// What the mesh of a recipe will take: its estimate, and constants for each triangle of its uses.
+// What a mesh will take: its estimate, and constants for each triangle of what becomes of it.
 #pragma once
 
-#include <filesystem>
-
-#include "recipe/recipe.h"
-#include "synthesis/field/implicit_field.h"
+#include "tasks/job/job.h"
 #include "tasks/synth/mesh_estimate.h"
-#include "tasks/synth/mesh_region.h"
+#include "tasks/synth/mesh_job.h"
 
 namespace astrolith {
-
-// The uses of a mesh that cost more than the mesh.
-struct MeshUse {
-  bool preview = false;
-  bool erosion = false;
-  bool twice = false;  // small pieces are left out, for which the mesh is made twice
-  bool gravity = false;
-  bool labels = false;
-  bool texture_coordinates = false;
-  bool even = false;
-  int map_side = 0;  // of maps that are baked, texels; 0: none
-};
-
-// A mesh that is to be made.
-struct PlannedMesh {
-  const ImplicitField& field;
-  const Recipe& recipe;
-  Region region;
-  std::filesystem::path output;  // its extension tells the format
-  MeshUse use;
-  MeshingDevice device = MeshingDevice::kCpu;  // that counts small meshes
-};
 
 // The run that will make the mesh.
 struct PlannedRun {
@@ -49,11 +24,18 @@ struct MeshPrediction {
   double own_evaluations = 0.0;    // of the field, by the estimate
 };
 
-// Predicts the mesh of this resolution, or of about so many triangles where these are above 0. Memory and
+// Predicts the mesh of a part of the body with the resolution or the triangles of its spec. Memory and
 // seconds are those of this process, with what it has taken so far. Throws what MeshEstimator throws.
-MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles, const PlannedRun& run);
+MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const PlannedRun& run);
 
 // Throws InputError where a prediction needs more memory than these bytes.
-void require_memory(const PlannedMesh& mesh, const MeshPrediction& predicted, double limit);
+void require_memory(const MeshJob& mesh, const Recipe& recipe, const MeshPrediction& predicted, double limit);
+
+// Returns the cells along the longest side. Large meshes are announced with triangles, bytes and seconds,
+// and stand as "predicted" in the summary. Throws InputError when the mesh needs more memory than allowed.
+int choose_resolution(Job& job, const MeshJob& mesh, const MeshPart& part);
+
+// Throws the InputError of a mesh that took more memory than predicted, and more than allowed.
+[[noreturn]] void fail_memory(const Job& job, const MeshJob& mesh);
 
 }  // namespace astrolith

@@ -1,9 +1,14 @@
-#include "tasks/synth/mesh_job_internal.h"
+#include "tasks/synth/mesh_reports.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
+
+#include "numerics/vec3_json.h"
+#include "synthesis/field/surface_colors.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {
@@ -43,10 +48,24 @@ std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const Impl
                                 : "finer than coordinates of a body made by operations resolve";
 }
 
+// Heights near the radius tear a body into pieces, which no seed or resolution mends.
+void question_pieces(const Job& job, const MeshPart& part, std::int64_t pieces) {
+  constexpr std::int64_t kTorn = 10;
+  const Vec3d e = part.field.bounds().extent();
+  const double height = part.field.height_bound(), thickness = std::min({e.x, e.y, e.z});
+  if (pieces < kTorn || height < 0.25 * thickness) return;
+  job.say(fmt::format(
+      "note: {} pieces: the layers are up to {:.3g} {} high on a body that is {:.3g} thick with them; lower "
+      "their heights",
+      pieces, height, part.recipe.length_unit, thickness));
+}
+
 }  // namespace
 
-void report_layers_left_out(Job& job, const ImplicitField& field, const Recipe& recipe,
-                            const std::filesystem::path& file, bool is_patch) {
+void report_layers_left_out(Job& job, const MeshPart& part) {
+  const Recipe& recipe = part.recipe;
+  const ImplicitField& field = part.field;
+  const bool is_patch = part.region.is_patch;
   auto list = nlohmann::ordered_json::array();
   std::map<std::string, std::string> words;  // by reason
   for (const LayerLeftOut& left : field.left_out()) {
@@ -67,7 +86,7 @@ void report_layers_left_out(Job& job, const ImplicitField& field, const Recipe& 
     named += (named.empty() ? "" : ", ") + in_words(left, recipe);
   }
   for (const auto& [reason, named] : words) {
-    job.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, named,
+    job.say(fmt::format("{}: left out, since {}: {}{}", part.file.string(), reason, named,
                         is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
   }
   job.summary["layers_left_out"] = std::move(list);
@@ -92,7 +111,10 @@ void report_erosion(Job& job, const Erosion& erosion, const ErosionStatistics& d
                                 : fmt::format("; not settled below {:g}: {}", erosion.talus_angle, remedy)));
 }
 
-void report_even(Job& job, const EvenStatistics& done, const std::string& unit) {
+void report_making(Job& job, const MeshPart& part, const BodyMeshReport& made) {
+  if (part.spec.least_component > 0.0) job.summary["dropped_components"] = made.dropped_components;
+  if (!made.even || made.manifold.triangles == 0) return;
+  const EvenStatistics& done = *made.even;
   job.summary["even"] = {
       {"quality_before", {{"first_percentile", done.before.first_percentile}, {"mean", done.before.mean}}},
       {"quality_after", {{"first_percentile", done.after.first_percentile}, {"mean", done.after.mean}}},
@@ -106,7 +128,51 @@ void report_even(Job& job, const EvenStatistics& done, const std::string& unit) 
       "{:.2f}; {} vertices moved along the surface, by {:.3g} {} in the mean and {:.3g} at most, "
       "{} stay; |F| <= {:.2g}",
       done.after.first_percentile, done.before.first_percentile, done.after.mean, done.before.mean,
-      done.moved, done.mean_move, unit, done.largest_move, done.kept, done.largest_value));
+      done.moved, done.mean_move, part.recipe.length_unit, done.largest_move, done.kept, done.largest_value));
+}
+
+void report_mesh(Job& job, const MeshJob& mesh, const MeshPart& part, const BodyMeshReport& made) {
+  const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
+  const Region& region = part.region;
+  const ManifoldReport& report = made.manifold;
+  job.summary["vertices"] = report.vertices;
+  job.summary["triangles"] = report.triangles;
+  job.summary["closed"] = report.closed();
+  job.summary["manifold"] = report.manifold() || report.triangles == 0;
+  if (!region.is_cut()) job.summary["genus"] = report.genus;
+  job.summary["components"] = report.components;
+  job.summary["evaluations"] = made.statistics.evaluations;
+  job.summary["cell"] = made.statistics.step;
+  job.summary["active_blocks"] = made.statistics.active_blocks;
+  job.summary["total_blocks"] = made.statistics.total_blocks;
+  if (region.is_patch || !(part.recipe.origin == Vec3d{})) {
+    job.summary["origin"] = json_of(part.recipe.origin + region.center);
+  }
+  if (region.axes) {
+    job.summary["patch_axes"] = {{"right", json_of(region.axes->right)},
+                                 {"ahead", json_of(region.axes->ahead)},
+                                 {"up", json_of(region.axes->up)}};
+  }
+  if (!region.is_cut()) question_pieces(job, part, report.components);
+  if (!has_colors(part.recipe)) return;
+  job.summary["vertex_colors"] = sinks.format().has_colors;
+  if (!sinks.format().has_colors && sinks.bake == 0) {
+    job.say("note: " + sinks.file.extension().string() +
+            " holds no colours, which the recipe's layers have; write a .ply or a .glb");
+  }
+}
+
+std::string words_of(const MeshSpec& spec, const ManifoldReport& report) {
+  const std::string triangles = spec.points ? std::to_string(report.vertices) + " points of a mesh that is "
+                                            : std::to_string(report.triangles) + " triangles, ";
+  if (!report.closed()) {
+    return triangles + (spec.patch.empty() ? "tile " + spec.tile : "a patch") + ", open where cut, manifold";
+  }
+  // Rough noise leaves small separate pieces, which few people want.
+  const bool crumbs = report.components > 1 && !(spec.least_component > 0.0);
+  return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
+         counted(static_cast<std::size_t>(report.components), "component") +
+         (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
 }  // namespace astrolith

@@ -78,10 +78,10 @@ SeenPixels seen_in_rows(const PictureMaps& maps, int first, int end) {
   return seen;
 }
 
-LayerMaps label_pixels(const PictureMaps& maps, const MapsSource& source, const Progress& progress) {
-  const SurfaceLabels labels(source.recipe, source.field, source.region.cube());
-  const FeatureFinder landforms(source.field, source.recipe, source.region.cube(), source.cell);
-  const Vec3d origin = source.region.center;
+LayerMaps label_pixels(const PictureMaps& maps, const MeshPart& part, double cell, const Progress& progress) {
+  const SurfaceLabels labels(part.recipe, part.field, part.region.cube());
+  const FeatureFinder landforms(part.field, part.recipe, part.region.cube(), cell);
+  const Vec3d origin = part.region.center;
   LayerMaps made{std::vector<std::int32_t>(maps.depth.size(), kNothing),
                  std::vector<std::int32_t>(maps.depth.size(), kNothing)};
   constexpr int kBand = 32;  // rows between two reports of progress
@@ -177,7 +177,7 @@ void write_preview(const Job& job, const PreviewRequest& request, const Triangle
 }
 
 void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
-                        const MapsSource& source) {
+                        const MeshPart& part, double cell) {
   const PictureMaps maps = render_maps(mesh, maps_options(job, request, mesh), job.progress("maps"));
   const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
   const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
@@ -186,11 +186,11 @@ void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleM
                                npz_array("normal", {h, w, 3}, maps.normal),
                                npz_array("view", {h, w}, maps.view)};
   LayerMaps layers;
-  if (source.recipe.erosion) {
+  if (part.recipe.erosion) {
     job.say("note: erosion moves what layers made: " + request.maps.string() +
             " has depth and normal, but neither layer nor instance");
   } else {
-    layers = label_pixels(maps, source, job.progress("labels"));
+    layers = label_pixels(maps, part, cell, job.progress("labels"));
     arrays.push_back(npz_array("layer", {h, w}, layers.layer));
     arrays.push_back(npz_array("instance", {h, w}, layers.instance));
   }

@@ -10,7 +10,7 @@
 #include "synthesis/picture/preview.h"
 #include "tasks/job/job.h"
 #include "tasks/job/picture_options.h"
-#include "tasks/synth/mesh_region.h"
+#include "tasks/synth/body_mesh.h"
 
 namespace astrolith {
 
@@ -36,22 +36,14 @@ void require_cameras_outside(const Job& job, const PreviewRequest& request, cons
 void write_preview(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit);
 
-// Where the surface of a mesh comes from.
-struct MapsSource {
-  const Recipe& recipe;
-  const std::filesystem::path& file;  // of the recipe, for messages
-  const Region& region;
-  const ImplicitField& field;  // of the recipe in the region
-  double cell;                 // side of the mesh's cells, length units
-};
-
-// Writes the maps as NPZ, with these arrays (h x w pixels, v views):
+// Writes the maps of a part's mesh, whose cells have this side (length units), as NPZ, with these arrays (h x
+// w pixels, v views):
 //   depth (h, w) float32, normal (h, w, 3) float32, view (h, w) int8,
 //   right, up, from, corner, eye (v, 3) float64, pixel () float64    as in synthesis/picture/picture_maps.h
 //   layer (h, w) int32       the label of synthesis/field/surface_labels.h; -1 where the ray meets nothing
 //   instance (h, w) int32    the row of the feature list, from 0; -1 for none
 // An eroded mesh has no layer and no instance, because erosion moves what layers made; a line says so.
 void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
-                        const MapsSource& source);
+                        const MeshPart& part, double cell);
 
 }  // namespace astrolith

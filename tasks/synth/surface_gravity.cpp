@@ -7,7 +7,6 @@
 #include "numerics/errors.h"
 #include "numerics/length_unit.h"
 #include "synthesis/field/field_mesh.h"
-#include "tasks/synth/body_mesh.h"
 
 namespace astrolith {
 namespace {
@@ -17,19 +16,19 @@ constexpr int kSample = 20;
 
 }  // namespace
 
-void check_gravity(const GravityRequest& request, const Recipe& recipe) {
-  if (!request.wanted()) return;
-  if (!(request.density_and_period[0] > 0.0))
+void check_gravity(const std::vector<double>& density_and_period, const Recipe& recipe) {
+  if (density_and_period.empty()) return;
+  if (!(density_and_period[0] > 0.0))
     throw InputError("--gravity: the density must be above 0 kg/m3; give another");
-  if (!(request.density_and_period[1] >= 0.0))
+  if (!(density_and_period[1] >= 0.0))
     throw InputError("--gravity: the period must not be below 0 hours; 0 is a body at rest");
   if (recipe.length_unit == "px")
     throw InputError("--gravity: a recipe in px has no size; state m or km in it");
 }
 
-BodyOfPatch body_of_patch(const Job& job, const Recipe& recipe, const std::filesystem::path& file) {
+BodyOfPatch body_of_patch(const Job& job, const MeshPart& patch) {
   constexpr int kCells = 256, kCoarseCells = 64;
-  const ImplicitField field = field_of_region(recipe, file, {});
+  const ImplicitField field = field_of_region(patch.recipe, patch.file, {});
   const auto meshed = [&](int cells) {
     MeshCollector body;
     mesh_field(field, field.bounds(), cells, body, job.progress("body"));
@@ -38,13 +37,12 @@ BodyOfPatch body_of_patch(const Job& job, const Recipe& recipe, const std::files
   return {meshed(kCells), meshed(kCoarseCells)};
 }
 
-SurfaceGravity::SurfaceGravity(const Job& job, const GravityRequest& request, const Recipe& recipe,
-                               const TriangleMesh& body)
-    : density_(request.density_and_period[0]),
-      metres_(metres_of(recipe.length_unit)),
+SurfaceGravity::SurfaceGravity(const Job& job, const MeshPart& part, const TriangleMesh& body)
+    : density_(part.spec.gravity[0]),
+      metres_(metres_of(part.recipe.length_unit)),
       gravity_(body, {}, job.progress("tree")),
       job_(job) {
-  const double period = request.density_and_period[1];
+  const double period = part.spec.gravity[1];
   rotation_.center = metres_ * body_mass(body).center;
   rotation_.rate = period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * period) : 0.0;
 }

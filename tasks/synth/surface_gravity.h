@@ -11,25 +11,24 @@
 #include "recipe/recipe.h"
 #include "tasks/gravity/gravity_table.h"
 #include "tasks/job/job.h"
-#include "tasks/synth/mesh_job.h"
+#include "tasks/synth/body_mesh.h"
 
 namespace astrolith {
 
 // Throws InputError for a density that is not above 0, a period below 0, and a recipe without a length unit.
-void check_gravity(const GravityRequest& request, const Recipe& recipe);
+void check_gravity(const std::vector<double>& density_and_period, const Recipe& recipe);
 
 // The whole body of a patch, in the recipe's coordinates: with so many cells along its longest side that its
 // gravity at the patch is right to .05 degrees (docs/gravity.md), and coarser for means over its surface.
 struct BodyOfPatch {
   TriangleMesh mesh, coarse;
 };
-BodyOfPatch body_of_patch(const Job& job, const Recipe& recipe, const std::filesystem::path& file);
+BodyOfPatch body_of_patch(const Job& job, const MeshPart& patch);
 
 // The gravity of a closed mesh in the recipe's coordinates, to 1e-6 of the acceleration.
 class SurfaceGravity {
  public:
-  SurfaceGravity(const Job& job, const GravityRequest& request, const Recipe& recipe,
-                 const TriangleMesh& body);
+  SurfaceGravity(const Job& job, const MeshPart& part, const TriangleMesh& body);
 
   // Places in the recipe's coordinates.
   std::vector<PointGravity> at(std::span<const Vec3d> points) const;

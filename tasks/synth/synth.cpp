@@ -23,9 +23,7 @@
 #include "tasks/job/job.h"
 #include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
-#include "tasks/synth/bake.h"
 #include "tasks/synth/body_mesh.h"
-#include "tasks/synth/detail_levels.h"
 #include "tasks/synth/finish.h"
 #include "tasks/synth/members.h"
 #include "tasks/synth/mesh_job.h"
@@ -42,7 +40,7 @@ struct SynthOptions {
   fs::path recipe = "recipe";  // the caller's recipe has this name
   fs::path base;
   std::string base_lengths = "units";
-  BodyRequest body;  // its recipe is the one that is made
+  MeshJob mesh;
   TextureRequest texture;
   MembersRequest members;
   FinishOptions finish;
@@ -62,18 +60,16 @@ void declare_options(Job& job, SynthOptions& options) {
           .reads(recipe_and_images);
   if (options.caller.recipe.empty()) recipe.required();
   job.options
-      .add_option("-o,--output", options.body.output,
+      .add_option("-o,--output", options.mesh.sinks.file,
                   "the mesh: " + written_mesh_words() +
                       ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict, "
                       "--write-recipe or --page is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
         if (!options.texture.size.empty()) return texture_files(options.texture, words.front());
-        std::vector<fs::path> files = level_files(words.front(), options.body.mesh.levels);
-        for (fs::path& map : map_files(options.body.mesh, words.front())) files.push_back(std::move(map));
-        return files;
+        return mesh_files(options.mesh.sinks, words.front());
       });
-  declare_mesh_options(job, options.body.mesh);
+  declare_mesh_options(job, options.mesh);
   job.options
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; a relief "
@@ -120,7 +116,7 @@ void declare_options(Job& job, SynthOptions& options) {
       .reads();
   job.options.add_option("--count", options.count, "gone; see --members").placeholder("N");
   job.options
-      .add_option("--write-recipe", options.body.recipe,
+      .add_option("--write-recipe", options.mesh.sinks.recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
                   "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json")
@@ -151,10 +147,10 @@ void declare_options(Job& job, SynthOptions& options) {
 }
 
 void make_texture(Job& job, const SynthOptions& options, const Recipe& recipe) {
-  require_extension(options.body.output, {".png", ".tif", ".tiff"});
-  const std::vector<fs::path> files = texture_files(options.texture, options.body.output);
+  require_extension(options.mesh.sinks.file, {".png", ".tif", ".tiff"});
+  const std::vector<fs::path> files = texture_files(options.texture, options.mesh.sinks.file);
   for (const fs::path& file : files) require_writable(file);
-  write_texture(job, options.texture, recipe, options.recipe, options.body.output);
+  write_texture(job, options.texture, recipe, options.recipe, options.mesh.sinks.file);
   summarize_output(job, files.front());
 }
 
@@ -241,21 +237,20 @@ void check_outputs(const Job& job, const SynthOptions& options) {
         "--count: is gone; write --members A:B, bodies A to B - 1, with {member} in the names of files");
   }
   check_finish(options.finish);
-  if (options.body.mesh.gravity.wanted())
-    question_density(job, options.body.mesh.gravity.density_and_period[0]);
-  check_members(options.members, options.body);
-  if (!options.body.recipe.empty()) {
-    require_extension(options.body.recipe, {".json", ".astro"});
-    if (single) require_writable(options.body.recipe);
+  if (!options.mesh.spec.gravity.empty()) question_density(job, options.mesh.spec.gravity[0]);
+  check_members(options.members, options.mesh);
+  if (!options.mesh.sinks.recipe.empty()) {
+    require_extension(options.mesh.sinks.recipe, {".json", ".astro"});
+    if (single) require_writable(options.mesh.sinks.recipe);
   }
   if (options.texture.size.empty()) {
     if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
-    if (single) check_mesh_outputs(job, options.body.mesh, options.body.output);
-  } else if (!options.body.output.empty()) {
-    require_extension(options.body.output, {".png", ".tif", ".tiff"});
+    if (single) check_mesh_outputs(job, options.mesh);
+  } else if (!options.mesh.sinks.file.empty()) {
+    require_extension(options.mesh.sinks.file, {".png", ".tif", ".tiff"});
   }
-  if (!options.body.output.empty() || !options.body.recipe.empty() || !options.page.empty() ||
-      options.body.mesh.size.only_predict)
+  if (!options.mesh.sinks.file.empty() || !options.mesh.sinks.recipe.empty() || !options.page.empty() ||
+      options.mesh.only_predict || options.mesh.sinks.arrays)
     return;
   throw InputError("--output: is required; name the file to make, such as -o body.ply");
 }
@@ -270,8 +265,8 @@ void check_members_of(const Job& job, const Recipe& recipe) {
 
 void synthesize(Job& job, const SynthOptions& options) {
   check_outputs(job, options);
-  const bool makes_mesh = !options.body.output.empty() && options.texture.size.empty();
-  const std::future<void> start = makes_mesh ? options.body.mesh.device.start() : std::future<void>();
+  const bool makes_mesh = options.mesh.sinks.wanted() && options.texture.size.empty();
+  const std::future<void> start = makes_mesh ? options.mesh.device.start() : std::future<void>();
   const Recipe recipe = read_input(job, options);
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
@@ -280,8 +275,8 @@ void synthesize(Job& job, const SynthOptions& options) {
   if (!options.page.empty())
     check_page(recipe, options.recipe, prefixes);  // before a variation is searched for
   const fs::path& file = options.base.empty() ? options.recipe : options.base;
-  const BodyRequest& body = options.body;
-  const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
+  const MeshJob& mesh = options.mesh;
+  const double patch_side = mesh.spec.patch.empty() ? 0.0 : mesh.spec.patch.back();
   const auto variation = [&](Job& part, const Recipe& of, std::uint64_t seed) {
     return finished(part, options.finish, varied(part, options, of, seed), file.string(), patch_side);
   };
@@ -296,14 +291,14 @@ void synthesize(Job& job, const SynthOptions& options) {
       member.recipe = variation(part, member.recipe, number);
       return member;
     };
-    const auto work = body.mesh.size.only_predict ? predict_members : make_members;
-    return work(job, options.members, body, {whole, file, draw});
+    const auto work = mesh.only_predict ? predict_members : make_members;
+    return work(job, options.members, mesh, {whole, file, draw});
   }
   const Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
-  if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
+  if (!mesh.sinks.recipe.empty()) write_loaded_recipe(made, mesh.sinks.recipe);
   if (!options.page.empty()) write_page(made, options.recipe, options.page, prefixes);
-  if (body.output.empty() && !body.mesh.size.only_predict) return;
-  make_mesh(job, body.mesh, made, file, body.output);
+  if (!mesh.sinks.wanted() && !mesh.only_predict) return;
+  make_mesh(job, mesh, made, file);
 }
 
 }  // namespace
@@ -313,9 +308,10 @@ JobWork declare_synth(Job& job) { return declare_called_synth(job, {"", {program
 JobWork declare_called_synth(Job& job, SynthCaller caller) {
   const auto options = std::make_shared<SynthOptions>();
   options->caller = std::move(caller);
+  options->mesh.sinks.arrays = options->caller.arrays;
   declare_options(job, *options);
   return [&job, options] {
-    if (!options->members.folder.empty()) options->body.output = options->members.folder / "{member}.ply";
+    if (!options->members.folder.empty()) options->mesh.sinks.file = options->members.folder / "{member}.ply";
     synthesize(job, *options);
   };
 }

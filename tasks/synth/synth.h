@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "tasks/job/job.h"
+#include "tasks/synth/mesh_job.h"
 
 namespace astrolith {
 
@@ -18,6 +20,8 @@ struct SynthCaller {
       recipe;  // the text of a recipe, whose images lie in the current folder; empty = a file is named
   std::vector<std::filesystem::path>
       prefixes;  // where packages are installed, the likeliest first: for --page
+  std::function<void(KeptMesh&&)> arrays =
+      {};  // takes the meshes, from several threads where there are members
 };
 JobWork declare_called_synth(Job& job, SynthCaller caller);
 

@@ -18,7 +18,6 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/surface_colors.h"
 #include "tasks/synth/body_mesh.h"
-#include "tasks/synth/erode_body.h"
 
 namespace astrolith {
 namespace {
@@ -109,14 +108,14 @@ void make(std::string_view text, const std::string& name, int resolution) {
   require_own_pixels(recipe, name);
   const std::filesystem::path file = name;
   require_body(recipe, file);
-  const Region whole;
-  const ImplicitField field = field_of_region(recipe, file, whole, host_goes_on);
+  const MeshSpec spec{.resolution = resolution};
+  const MeshPart part = part_of_body(spec, recipe, file, false, host_goes_on, {});
   MeshCollector collector;
-  const BodyMeshReport made = make_body_mesh({recipe, field, file, whole, resolution}, collector,
-                                             [](const std::string&) { return host_goes_on; });
+  const BodyMeshReport made =
+      make_body_mesh(part, collector, [](const std::string&) { return host_goes_on; });
   TriangleMesh& mesh = collector.mesh;
   if (recipe.erosion) erode_body(*recipe.erosion, mesh, host_goes_on);
-  if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, field).colors_of({}, mesh);
+  if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, part.field).colors_of({}, mesh);
   to.figures = figures_of(made, recipe, mesh).dump();
   to.info = info_of(recipe);
   to.positions = as_floats(mesh.vertices);

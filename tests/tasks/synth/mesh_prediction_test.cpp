@@ -10,10 +10,23 @@ namespace {
 
 constexpr int kThreads = 1;
 
-MeshPrediction predicted(const Recipe& recipe, int resolution, const MeshUse& use = {},
-                         const Region& region = {}, const std::string& output = "mesh.ply") {
-  const ImplicitField field(recipe);
-  return predict_mesh({field, recipe, region, output, use}, resolution, 0.0, {kThreads});
+const std::filesystem::path kRecipeFile = "recipe.json";
+
+MeshPart part_of(const MeshSpec& spec, const Recipe& recipe) {
+  return part_of_body(spec, recipe, kRecipeFile, false, {}, {});
+}
+
+MeshPrediction predicted(const Recipe& recipe, MeshSpec spec, const std::string& file = "mesh.ply") {
+  const MeshJob mesh{.spec = std::move(spec), .sinks = {.file = file}};
+  return predict_mesh(mesh, part_of(mesh.spec, recipe), {kThreads});
+}
+MeshPrediction predicted(const Recipe& recipe, int resolution) {
+  return predicted(recipe, MeshSpec{.resolution = resolution});
+}
+
+int resolution_for(const Recipe& recipe, double triangles) {
+  const MeshSpec whole;
+  return MeshEstimator(part_of(whole, recipe)).resolution_for(triangles);
 }
 
 MeshStatistics made(const Recipe& recipe, int resolution, MeshTile tile = {}) {
@@ -68,11 +81,12 @@ TEST(MeshPrediction, ASmallMeshIsExact) {
 
 TEST(MeshPrediction, ATileIsPredictedAlone) {
   const Recipe recipe = testing::potato_recipe(20, 3);
-  Region region;
-  region.tile = {1, 3};
-  EXPECT_EQ(predicted(recipe, 64, {}, region).triangles, double(made(recipe, 64, region.tile).triangles));
-  const double triangles = double(made(recipe, 200, region.tile).triangles);
-  EXPECT_NEAR(predicted(recipe, 200, {}, region).triangles / triangles, 1.0, 0.2);
+  const MeshTile tile{1, 3};
+  const auto predicted_tile = [&](int cells) {
+    return predicted(recipe, MeshSpec{.tile = "2/3", .resolution = cells}).triangles;
+  };
+  EXPECT_EQ(predicted_tile(64), double(made(recipe, 64, tile).triangles));
+  EXPECT_NEAR(predicted_tile(200) / double(made(recipe, 200, tile).triangles), 1.0, 0.2);
 }
 
 // Samples are counted, because seconds depend on what else the machine does.
@@ -86,9 +100,8 @@ TEST(MeshPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
 
 TEST(MeshPrediction, TrianglesChooseTheResolution) {
   for (const Recipe& recipe : recipes()) {
-    const ImplicitField field(recipe);
     for (const double triangles : {5e3, 2e4, 1e5}) {
-      const int resolution = MeshEstimator(field, recipe, {}).resolution_for(triangles);
+      const int resolution = resolution_for(recipe, triangles);
       EXPECT_NEAR(double(made(recipe, resolution).triangles), triangles, 0.055 * triangles);
     }
   }
@@ -97,8 +110,8 @@ TEST(MeshPrediction, TrianglesChooseTheResolution) {
 // Probes of a small mesh take many times what the mesh takes, since each is as wide as heights are high.
 TEST(MeshPrediction, SmallMeshesAreCountedAFewTimes) {
   for (const Recipe& recipe : recipes()) {
-    const ImplicitField field(recipe);
-    MeshEstimator estimator(field, recipe, {});
+    const MeshSpec whole;
+    MeshEstimator estimator(part_of(whole, recipe));
     const int resolution = estimator.resolution_for(2e4);
     const MeshEstimate estimate = estimator.at(resolution);
     const MeshStatistics mesh = made(recipe, resolution);
@@ -109,19 +122,19 @@ TEST(MeshPrediction, SmallMeshesAreCountedAFewTimes) {
 
 TEST(MeshPrediction, MoreTrianglesThanTheFinestMeshHasAreRefused) {
   const Recipe recipe = testing::potato_recipe(20, 3);
-  const ImplicitField field(recipe);
-  EXPECT_THROW(MeshEstimator(field, recipe, {}).resolution_for(1e10), InputError);
+  EXPECT_THROW(resolution_for(recipe, 1e10), InputError);
 }
 
 TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
-  Recipe recipe = hills();
-  recipe.erosion = Erosion{.talus_angle = 30.0};
+  const Recipe recipe = hills();
+  Recipe eroded = recipe;
+  eroded.erosion = Erosion{.talus_angle = 30.0};
   constexpr int kFine = 1024;  // so that its bytes are more than the test itself has taken
   const MeshPrediction plain = predicted(recipe, kFine);
-  const MeshPrediction labels = predicted(recipe, kFine, {.labels = true}),
-                       gravity = predicted(recipe, kFine, {.gravity = true}),
-                       even = predicted(recipe, kFine, {.even = true}),
-                       erosion = predicted(recipe, kFine, {.erosion = true});
+  const MeshPrediction labels = predicted(recipe, MeshSpec{.resolution = kFine, .labels = true}),
+                       gravity = predicted(recipe, MeshSpec{.resolution = kFine, .gravity = {2000, 6}}),
+                       even = predicted(recipe, MeshSpec{.resolution = kFine, .even = true}),
+                       erosion = predicted(eroded, kFine);
   EXPECT_NEAR(labels.file_bytes / plain.file_bytes, 29.0 / 25.0, 0.01);
   EXPECT_NEAR(gravity.file_bytes / plain.file_bytes, 41.0 / 25.0, 0.01);
   EXPECT_GT(gravity.processor_seconds, 1.3 * plain.processor_seconds);
@@ -133,7 +146,7 @@ TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
   EXPECT_GT(more(even), 40.0);
   EXPECT_GT(more(erosion), 90.0);
   EXPECT_GT(more(gravity), 200.0);
-  EXPECT_GT(more(predicted(recipe, kFine, {}, {}, "mesh.stl")), 30.0);
+  EXPECT_GT(more(predicted(recipe, MeshSpec{.resolution = kFine}, "mesh.stl")), 30.0);
 }
 
 // Impulses are kept in bricks, of which a finer mesh needs no more.
@@ -146,11 +159,10 @@ TEST(MeshPrediction, ImpulsesTakeMemory) {
 
 TEST(MeshPrediction, MemoryThatIsNotThereIsRefused) {
   const Recipe recipe = hills();
-  const ImplicitField field(recipe);
-  const PlannedMesh planned{field, recipe, {}, "mesh.obj", {}};
-  const MeshPrediction mesh = predict_mesh(planned, 256, 0.0, {kThreads});
-  EXPECT_NO_THROW(require_memory(planned, mesh, 1.01 * mesh.peak_bytes));
-  EXPECT_THROW(require_memory(planned, mesh, 0.99 * mesh.peak_bytes), InputError);
+  const MeshJob planned{.sinks = {.file = "mesh.obj"}};
+  const MeshPrediction mesh = predict_mesh(planned, part_of(planned.spec, recipe), {kThreads});
+  EXPECT_NO_THROW(require_memory(planned, recipe, mesh, 1.01 * mesh.peak_bytes));
+  EXPECT_THROW(require_memory(planned, recipe, mesh, 0.99 * mesh.peak_bytes), InputError);
 }
 
 }  // namespace

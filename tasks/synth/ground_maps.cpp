@@ -1,17 +1,25 @@
+#include "tasks/synth/ground_maps.h"
+
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "geometry/surface/footprint_planes.h"
+#include "geometry/surface/height_map.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
+#include "numerics/vec3_json.h"
 #include "synthesis/field/feature_list.h"
 #include "synthesis/picture/image_file.h"
+#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
-#include "tasks/synth/ground_maps.h"
 
 namespace astrolith {
 namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr int kBands = 3;
 const std::vector<std::string> kBandNames{"slope_deg", "roughness_m", "boulder_m"};
@@ -79,8 +87,8 @@ void mark_boulder(const PlacedBoulder& boulder, const HeightMap& map, const Vec3
   }
 }
 
-nlohmann::ordered_json largest_values(const std::vector<float>& bands) {
-  nlohmann::ordered_json largest;
+Json largest_values(const std::vector<float>& bands) {
+  Json largest;
   for (std::size_t k = 0; k < kBands; ++k) {
     float most = 0.0f;
     for (std::size_t i = k; i < bands.size(); i += kBands) most = std::fmax(most, bands[i]);
@@ -89,32 +97,52 @@ nlohmann::ordered_json largest_values(const std::vector<float>& bands) {
   return largest;
 }
 
-}  // namespace
+fs::path frame_file(const fs::path& file) { return fs::path(file).replace_extension(".json"); }
 
-void check_hazard_map(const HazardRequest& request, const Region& region, const Recipe& recipe,
-                      int resolution) {
-  if (request.file.empty()) return;
-  check_map(request.file, "--hazard-map", region, recipe, resolution);
-  if (!(request.footprint > 0.0)) {
-    throw InputError(
-        "--hazard-map: needs the side of the ground that a lander stands on; add --footprint L, in the "
-        "recipe's unit");
-  }
-  const double pixel = region.size / resolution;
-  if (request.footprint < 3.0 * pixel || request.footprint > 0.5 * region.size) {
-    throw InputError(
-        "--footprint: is less than 3 pixels or more than half the patch; change --resolution or the patch");
-  }
+void check_map(const fs::path& file, const std::string& option, const MeshPart& part) {
+  constexpr int kMostPixels = 16384;
+  if (!part.region.is_patch) throw InputError(option + ": is of a patch; add --patch X Y Z SIDE");
+  if (!part.region.plane)
+    throw InputError(option +
+                     ": the patch holds no surface that faces one direction; move it, or take a smaller one");
+  if (part.recipe.length_unit == "px")
+    throw InputError(option + ": a recipe in px has no size; state m or km in it");
+  if (part.resolution > kMostPixels)
+    throw InputError(option + ": has at most 16384 pixels along a side; lower --resolution");
+  require_extension(file, {".tif"});
+  require_writable(file);
 }
 
-void write_hazard_map(Job& job, const HazardRequest& request, const HeightMap& map, const PatchGround& ground,
+// Where the pixels of a map lie in the body frame, and how many have no height.
+Json frame_json(const HeightMap& map, const MeshPart& part) {
+  const double metres = metres_of(part.recipe.length_unit);
+  std::int64_t without = 0;
+  for (const float height : map.heights) without += std::isnan(height) ? 1 : 0;
+  return {{"pixels", map.side},
+          {"metres_per_pixel", metres * map.pixel},
+          {"origin_m", json_of(metres * (part.recipe.origin + part.region.center + map.origin))},
+          {"right", json_of(map.right)},
+          {"ahead", json_of(map.ahead)},
+          {"up", json_of(map.up)},
+          {"body_frame", part.recipe.frame},
+          {"pixel_center",
+           "origin + (i + 1/2 - pixels/2) metres_per_pixel right + (pixels/2 - (j + 1/2)) "
+           "metres_per_pixel ahead + height up; column i, row j from the top left"},
+          {"pixels_without_data", without}};
+}
+
+std::string ascii_line(const Json& frame) {
+  return frame.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+void write_hazard_map(Job& job, const MeshSinks& sinks, const HeightMap& map, const MeshPart& part,
                       const SurfaceGravity& gravity) {
-  const double metres = metres_of(ground.recipe.length_unit);
-  const int half = half_footprint(request.footprint, map.pixel);
+  const double metres = metres_of(part.recipe.length_unit);
+  const int half = half_footprint(sinks.footprint, map.pixel);
   HeightMap in_metres = map;
   in_metres.pixel *= metres;
   const std::vector<FootprintPlane> planes = footprint_planes(in_metres, half);
-  const VerticalLattice verticals(map, ground.region.center, metres, gravity);
+  const VerticalLattice verticals(map, part.region.center, metres, gravity);
   std::vector<float> bands(kBands * planes.size());
   for (std::size_t at = 0; at < planes.size(); ++at) {
     const FootprintPlane& plane = planes[at];
@@ -129,17 +157,57 @@ void write_hazard_map(Job& job, const HazardRequest& request, const HeightMap& m
     bands[kBands * at + 1] = plane.rms;
     bands[kBands * at + 2] = known ? 0.0f : plane.rms;
   }
-  for (const Feature& landform : features_of(ground.field, ground.region.cube())) {
+  for (const Feature& landform : features_of(part.field, part.region.cube())) {
     if (landform.boulder != nullptr && is_resolved(landform, map.pixel))
-      mark_boulder(*landform.boulder, map, ground.region.center, metres, map.pixel * (2 * half + 1), bands);
+      mark_boulder(*landform.boulder, map, part.region.center, metres, map.pixel * (2 * half + 1), bands);
   }
-  nlohmann::ordered_json frame = frame_json(map, ground);
+  Json frame = frame_json(map, part);
   frame["footprint_m"] = metres * map.pixel * (2 * half + 1);
   frame["largest"] = largest_values(bands);
-  write_geotiff(bands, map.side, map.side, metres * map.pixel,
-                frame.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace), request.file,
+  write_geotiff(bands, map.side, map.side, metres * map.pixel, ascii_line(frame), sinks.hazard_map,
                 kBandNames);
   job.summary["hazard_map"] = {{"footprint_m", frame["footprint_m"]}, {"largest", frame["largest"]}};
+}
+
+}  // namespace
+
+std::vector<fs::path> height_map_files(const std::vector<std::string>& names) {
+  std::vector<fs::path> files(names.begin(), names.end());
+  for (const std::string& name : names) files.push_back(frame_file(name));
+  return files;
+}
+
+void check_ground_maps(const MeshSinks& sinks, const MeshPart& part) {
+  if (!sinks.height_map.empty()) {
+    check_map(sinks.height_map, "--height-map", part);
+    require_writable(frame_file(sinks.height_map));
+  }
+  if (sinks.hazard_map.empty()) return;
+  check_map(sinks.hazard_map, "--hazard-map", part);
+  if (!(sinks.footprint > 0.0)) {
+    throw InputError(
+        "--hazard-map: needs the side of the ground that a lander stands on; add --footprint L, in the "
+        "recipe's unit");
+  }
+  const double size = part.region.size, pixel = size / part.resolution;
+  if (sinks.footprint < 3.0 * pixel || sinks.footprint > 0.5 * size) {
+    throw InputError(
+        "--footprint: is less than 3 pixels or more than half the patch; change --resolution or the patch");
+  }
+}
+
+void write_ground_maps(Job& job, const MeshSinks& sinks, const MeshPart& part, const TriangleMesh& mesh,
+                       const SurfaceGravity* gravity) {
+  if (!sinks.has_ground_maps()) return;
+  const double metres = metres_of(part.recipe.length_unit);
+  const HeightMap map = height_map(mesh, *part.region.plane, part.region.size, part.resolution, metres);
+  if (!sinks.height_map.empty()) {
+    const Json frame = frame_json(map, part);
+    write_geotiff(map.heights, map.side, map.side, metres * map.pixel, ascii_line(frame), sinks.height_map);
+    write_file(frame_file(sinks.height_map), json_text(frame));
+    job.summary["height_map"] = frame;
+  }
+  if (!sinks.hazard_map.empty()) write_hazard_map(job, sinks, map, part, *gravity);
 }
 
 }  // namespace astrolith
