@@ -71,11 +71,11 @@ def mesh(recipe: RecipeLike, *, threads: int = 0, progress: Progress = None, **o
         Ctrl-C was pressed; it is raised within a second.
     """
     figures, made = call(_synthesis.meshes, "mesh", recipe, options, threads, progress)
-    remarks = _jobs.figures_of(figures)["remarks"]
-    if options.get("members") is None and len(made) == 1:
+    said = _jobs.figures_of(figures)
+    if not made or said.get("members", {}).get("failed"):
+        raise ValueError(f"mesh: {said.remarks[0] if said.remarks else 'these options make none; call synth'}")
+    if "members" not in said:
         return _made(made[0])
-    if not made:
-        raise ValueError(f"mesh: {remarks[0] if remarks else 'these options make none; call synth'}")
     return [_made(fields) for fields in made]
 
 

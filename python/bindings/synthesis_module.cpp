@@ -30,7 +30,7 @@
 #include "tasks/description/describe_file.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/description/variation_reference.h"
-#include "tasks/synth/plane_texture.h"
+#include "tasks/synth/texture.h"
 
 namespace astrolith::python {
 namespace {

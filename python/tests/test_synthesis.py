@@ -279,3 +279,17 @@ def test_a_body_of_the_kind_is_that_of_synth(ball, example, program, tmp_path):
     assert relief.layers[-1].arrangement == "measured"
     with pytest.raises(ValueError, match="has no relief"):
         ball.like(5)
+
+
+def test_all_options_of_synth_make_arrays(ball, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    first, second = astrolith.mesh({**WORM, "layers": [{"type": "simplex", "amplitude": 0.1, "frequency": 1}]}, resolution=24, members="3:5")
+    assert first.figures.triangles == len(first.faces) and (first.vertices[:100] != second.vertices[:100]).any()
+    heavy = astrolith.mesh(ball, resolution=24, gravity=(2000, 6), output="heavy.ply", preview="p.png", picture_size="64x48")
+    assert set(heavy.values) >= {"slope_deg", "potential_J_kg"} and (tmp_path / "p.png").exists()
+    astrolith.write_mesh(heavy, "again.ply")
+    assert (tmp_path / "again.ply").read_bytes() == (tmp_path / "heavy.ply").read_bytes()
+    assert len(astrolith.mesh(ball, resolution=24, points=True).faces) == 0
+    for options, said in (({"texture": "8x8"}, "^texture"), ({"uv": "charts"}, "^lod, uv: are of a file"), ({"members": "0:2", "patch": (9, 9, 9, 1)}, "^mesh: member 0")):
+        with pytest.raises(ValueError, match=said):
+            astrolith.mesh(ball, resolution=8, **options)

@@ -208,63 +208,49 @@ struct Tally {
   std::uint64_t made = 0, there = 0, failed = 0;
 };
 
-// Makes the members of a range, some beside each other.
-class RangeMaker {
- public:
-  RangeMaker(Job& job, const MemberMaker& maker, const MemberRange& range)
-      : job_(job), maker_(maker), range_(range), next_(range.begin) {}
-
-  Tally make(int beside_each_other) {
-    // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by
-    // one.
-    const UnsyncedOutputs unsynced;
-    parallel_for(0, beside_each_other, [&](std::int64_t) {
-      while (const std::optional<std::uint64_t> number = next())
-        within_own_loops([&] { make_or_report(*number); });
-    });
-    if (!job_.stopped()) progress_(1.0, "");
-    return tally_;
-  }
-
- private:
+// Makes the members of a range, some beside each other. A member that fails is reported.
+Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range, int beside_each_other) {
+  std::mutex mutex;
+  const Progress progress = job.progress("members");
+  std::uint64_t next = range.begin;
+  Tally tally;
   // The next member to be made; none at the end, or after a stop.
-  std::optional<std::uint64_t> next() {
-    const std::lock_guard lock(mutex_);
-    if (next_ == range_.end) return {};
+  const auto take = [&]() -> std::optional<std::uint64_t> {
+    const std::lock_guard lock(mutex);
+    if (next == range.end) return {};
     const double share =
-        static_cast<double>(next_ - range_.begin) / static_cast<double>(range_.end - range_.begin);
-    if (!progress_(share, fmt::format("member {}", next_))) return {};
-    return next_++;
-  }
-
-  void make_or_report(std::uint64_t number) {
+        static_cast<double>(next - range.begin) / static_cast<double>(range.end - range.begin);
+    if (!progress(share, fmt::format("member {}", next))) return {};
+    return next++;
+  };
+  const auto make_or_report = [&](std::uint64_t number) {
     std::string reason;
     try {
-      const bool is_there = maker_.is_finished(number);
-      const Json line = is_there ? Json() : maker_.make(number);
-      const std::lock_guard lock(mutex_);
-      if (!is_there) maker_.keep(line);
-      ++(is_there ? tally_.there : tally_.made);
+      const bool is_there = maker.is_finished(number);
+      const Json line = is_there ? Json() : maker.make(number);
+      const std::lock_guard lock(mutex);
+      if (!is_there) maker.keep(line);
+      ++(is_there ? tally.there : tally.made);
       return;
     } catch (const std::bad_alloc&) {
       reason = "out of memory; try a smaller resolution";
     } catch (const std::exception& e) {
       reason = e.what();
     }
-    if (job_.stopped()) return;
-    const std::lock_guard lock(mutex_);
-    ++tally_.failed;
-    job_.report_failure(fmt::format("member {}: {}", number, reason));
-  }
-
-  Job& job_;
-  const MemberMaker& maker_;
-  MemberRange range_;
-  std::mutex mutex_;
-  Progress progress_ = job_.progress("members");
-  std::uint64_t next_;
-  Tally tally_;
-};
+    if (job.stopped()) return;
+    const std::lock_guard lock(mutex);
+    ++tally.failed;
+    job.report_failure(fmt::format("member {}: {}", number, reason));
+  };
+  // The manifest tells files that a power cut damaged, so that members need not wait for the disk one by one.
+  const UnsyncedOutputs unsynced;
+  parallel_for(0, beside_each_other, [&](std::int64_t) {
+    while (const std::optional<std::uint64_t> number = take())
+      within_own_loops([&] { make_or_report(*number); });
+  });
+  if (!job.stopped()) progress(1.0, "");
+  return tally;
+}
 
 // How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
 // is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
@@ -402,7 +388,7 @@ void make_members(Job& job, const MembersRequest& request, const MeshJob& mesh, 
     job.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
                         counted(static_cast<std::size_t>(unreadable), "line")));
   }
-  const Tally tally = RangeMaker(job, maker, range).make(members_at_once(mesh, range.end - range.begin));
+  const Tally tally = make_range(job, maker, range, members_at_once(mesh, range.end - range.begin));
   for (const fs::path& name : names_of(first.sinks)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
   job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};

@@ -225,17 +225,6 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
           size_words(extent.box.extent(), recipe.length_unit) + chosen.remark());
 }
 
-// Makes the files within the memory of --max-memory.
-void make_files_in_memory(Job& job, const MeshJob& mesh, const MeshPart& part, const ChosenDevice& chosen) {
-  if (!(mesh.max_memory_gb > 0.0)) return make_files(job, mesh, part, chosen);
-  try {
-    const MemoryGuard guard(memory_limit(mesh.max_memory_gb));
-    make_files(job, mesh, part, chosen);
-  } catch (const std::bad_alloc&) {
-    fail_memory(job, mesh);
-  }
-}
-
 // Does the work with the part's device, and again on the CPU where the GPU fails.
 template <class Work>
 auto on_device(Job& job, const MeshJob& mesh, MeshPart& part, ChosenDevice chosen, const Work& work) {
@@ -266,8 +255,17 @@ void make_mesh(Job& job, const MeshJob& mesh, const Recipe& recipe, const fs::pa
   if (mesh.only_predict) return;
   if (!part.region.is_cut()) require_cameras_outside(job, sinks.preview, part.field);
   part.may_be_empty = part.region.tile.count > 1 && sinks.format().streamed && !sinks.need_whole();
-  on_device(job, mesh, part, mesh.device.choose(job, lacking_on_gpu(part)),
-            [&](const ChosenDevice& chosen) { make_files_in_memory(job, mesh, part, chosen); });
+  on_device(job, mesh, part, mesh.device.choose(job, lacking_on_gpu(part)), [&](const ChosenDevice& chosen) {
+    std::optional<MemoryGuard> guard;
+    if (mesh.max_memory_gb > 0.0) guard.emplace(memory_limit(mesh.max_memory_gb));
+    try {
+      make_files(job, mesh, part, chosen);
+    } catch (const std::bad_alloc&) {
+      if (!guard) throw;
+      guard.reset();
+      fail_memory(job, mesh);
+    }
+  });
 }
 
 void summarize_output(Job& job, const fs::path& output) {

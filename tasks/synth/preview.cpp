@@ -1,11 +1,19 @@
 #include "tasks/synth/preview.h"
 
+#include <zip.h>
+
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "numerics/errors.h"
+#include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/srgb.h"
@@ -15,7 +23,6 @@
 #include "synthesis/picture/picture_maps.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/pixel_size.h"
-#include "tasks/synth/npz_file.h"
 
 namespace astrolith {
 namespace {
@@ -49,6 +56,105 @@ PreviewOptions maps_options(const Job& job, const PreviewRequest& request, const
   options.width = size.width;
   options.height = size.height;
   return options;
+}
+
+// An array of an NPZ file, its last index running fastest. It does not own its values.
+struct NpzArray {
+  template <class T>
+  NpzArray(std::string its_name, std::vector<int> its_shape, const std::vector<T>& of)
+      : name(std::move(its_name)),
+        type(std::is_same_v<T, float>    ? "<f4"
+             : std::is_same_v<T, double> ? "<f8"
+             : sizeof(T) == 1            ? "|i1"
+                                         : "<i4"),
+        shape(std::move(its_shape)),
+        values(std::as_bytes(std::span(of))) {}
+
+  std::string name, type;  // numpy's word for the type
+  std::vector<int> shape;  // empty for a single number
+  std::span<const std::byte> values;
+};
+
+constexpr int kLevel = 1;                          // of zlib; higher levels save some percent only
+constexpr std::uint16_t kFirstDay = (1 << 5) | 1;  // 1 January 1980, where the dates of zip archives begin
+
+struct DiscardArchive {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+struct FreeSource {
+  void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+using Archive = std::unique_ptr<zip_t, DiscardArchive>;
+using Source = std::unique_ptr<zip_source_t, FreeSource>;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
+  throw WorkError(file.string() + ": cannot be packed: " + reason);
+}
+
+Source make_source(const void* data, std::size_t bytes, const std::filesystem::path& file) {
+  zip_error_t error;
+  zip_error_init(&error);
+  Source source(zip_source_buffer_create(data, bytes, 0, &error));
+  if (!source) fail(file, zip_error_strerror(&error));
+  return source;
+}
+
+std::string npy_bytes(const NpzArray& array) {
+  return npy_header(array.type, array.shape)
+      .append(reinterpret_cast<const char*>(array.values.data()), array.values.size());
+}
+
+// The archive only refers to `bytes`, which must live until it is closed.
+void add(zip_t* archive, const std::string& name, const std::string& bytes,
+         const std::filesystem::path& file) {
+  Source source = make_source(bytes.data(), bytes.size(), file);
+  const zip_int64_t index = zip_file_add(archive, (name + ".npy").c_str(), source.get(), ZIP_FL_ENC_UTF_8);
+  if (index < 0) fail(file, zip_strerror(archive));
+  static_cast<void>(source.release());  // the archive owns it now
+  const auto number = static_cast<zip_uint64_t>(index);
+  if (zip_set_file_compression(archive, number, ZIP_CM_DEFLATE, kLevel) != 0 ||
+      zip_file_set_dostime(archive, number, 0, kFirstDay, 0) != 0) {
+    fail(file, zip_strerror(archive));
+  }
+}
+
+void copy(zip_source_t* packed, const std::filesystem::path& file) {
+  OutputFile out(file);
+  if (zip_source_open(packed) != 0) fail(file, zip_error_strerror(zip_source_error(packed)));
+  std::array<char, 1 << 16> buffer;
+  zip_int64_t bytes = 0;
+  while ((bytes = zip_source_read(packed, buffer.data(), buffer.size())) > 0) {
+    out.write(buffer.data(), static_cast<std::size_t>(bytes));
+  }
+  zip_source_close(packed);
+  if (bytes < 0) fail(file, zip_error_strerror(zip_source_error(packed)));
+  out.commit();
+}
+
+// Writes the arrays, compressed, in their order. The file has no time stamps: equal arrays give equal bytes.
+// It appears whole or not at all. Throws InputError where the target cannot be written, and WorkError where
+// memory or the disk is full.
+void write_npz(std::span<const NpzArray> arrays, const std::filesystem::path& file) {
+  std::vector<std::string> contents;
+  for (const NpzArray& array : arrays) {
+    const std::size_t bytes_of_one = static_cast<std::size_t>(array.type.back() - '0');
+    if (array.values.size() != npy_size(array.shape) * bytes_of_one)
+      throw WorkError(file.string() + ": " + array.name + ": the array does not have the stated shape");
+    contents.push_back(npy_bytes(array));
+  }
+  const Source packed = make_source(nullptr, 0, file);
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_keep(packed.get());  // read once the archive, which owns one reference, is closed
+  Archive archive(zip_open_from_source(packed.get(), ZIP_TRUNCATE, &error));
+  if (!archive) {
+    zip_source_free(packed.get());
+    fail(file, zip_error_strerror(&error));
+  }
+  for (std::size_t i = 0; i < contents.size(); ++i) add(archive.get(), arrays[i].name, contents[i], file);
+  if (zip_close(archive.get()) != 0) fail(file, zip_strerror(archive.get()));
+  static_cast<void>(archive.release());
+  copy(packed.get(), file);
 }
 
 constexpr std::int32_t kNothing = -1;
@@ -182,24 +288,23 @@ void write_preview_maps(Job& job, const PreviewRequest& request, const TriangleM
   const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
   const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
                             corner = flat(maps.corner), eye = flat(maps.eye), pixel{maps.pixel};
-  std::vector<NpzArray> arrays{npz_array("depth", {h, w}, maps.depth),
-                               npz_array("normal", {h, w, 3}, maps.normal),
-                               npz_array("view", {h, w}, maps.view)};
+  std::vector<NpzArray> arrays{
+      {"depth", {h, w}, maps.depth}, {"normal", {h, w, 3}, maps.normal}, {"view", {h, w}, maps.view}};
   LayerMaps layers;
   if (part.recipe.erosion) {
     job.say("note: erosion moves what layers made: " + request.maps.string() +
             " has depth and normal, but neither layer nor instance");
   } else {
     layers = label_pixels(maps, part, cell, job.progress("labels"));
-    arrays.push_back(npz_array("layer", {h, w}, layers.layer));
-    arrays.push_back(npz_array("instance", {h, w}, layers.instance));
+    arrays.push_back({"layer", {h, w}, layers.layer});
+    arrays.push_back({"instance", {h, w}, layers.instance});
   }
-  arrays.push_back(npz_array("right", {views, 3}, right));
-  arrays.push_back(npz_array("up", {views, 3}, up));
-  arrays.push_back(npz_array("from", {views, 3}, from));
-  arrays.push_back(npz_array("corner", {views, 3}, corner));
-  arrays.push_back(npz_array("eye", {views, 3}, eye));
-  arrays.push_back(npz_array("pixel", {}, pixel));
+  arrays.push_back({"right", {views, 3}, right});
+  arrays.push_back({"up", {views, 3}, up});
+  arrays.push_back({"from", {views, 3}, from});
+  arrays.push_back({"corner", {views, 3}, corner});
+  arrays.push_back({"eye", {views, 3}, eye});
+  arrays.push_back({"pixel", {}, pixel});
   write_npz(arrays, request.maps);
 }
 
