@@ -16,7 +16,7 @@
 #include <new>
 
 #include "apps/help_formatter.h"
-#include "apps/option_names.h"
+#include "numerics/edit_distance.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"

@@ -32,6 +32,10 @@ foreach(folder IN LISTS header_folders)
     FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
 endforeach()
 install(FILES LICENSE recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
+# tasks/job/body_library.cpp finds the bodies beside the programs, in the folder of the build as in an installed prefix.
+install(DIRECTORY library DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith COMPONENT programs)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/astrolith)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/library ${PROJECT_BINARY_DIR}/share/astrolith/library SYMBOLIC)
 include(AstrolithManPages)
 include(AstrolithPackage)
 

@@ -35,7 +35,13 @@ Upstream-Name: Astrolith
 Files: *
 Copyright: 2026 The Astrolith authors
 License: Expat
- ${licence}")
+ ${licence}
+
+Files: library/*
+Copyright: the people that library/SOURCES.md names for each body
+License: CC0-1.0 and CC-BY-4.0
+ library/SOURCES.md states the licence of each body.
+")
 install(FILES ${scripts}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/astrolith COMPONENT programs)
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/astrolith COMPONENT programs)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/finish.cmake)

@@ -101,7 +101,10 @@ class Gravity:
 
 
 def _is_recipe(body: Any) -> bool:
-    return isinstance(body, Mapping) or (_arrays.is_file_name(body) and os.fsdecode(body).endswith((".json", ".astro")))
+    if not _arrays.is_file_name(body):
+        return isinstance(body, Mapping)
+    file = _synthesis.find_body(_arrays.file_name(body, "body"))
+    return os.fsdecode(file).endswith((".json", ".astro"))
 
 
 def _site_lengths(sites: int, size: Optional[float], distance: Optional[float], at_facets: bool) -> tuple[float, float]:

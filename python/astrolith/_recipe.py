@@ -103,7 +103,9 @@ class Recipe(Record):
 
     @classmethod
     def read(cls, file: PathLike) -> "Recipe":
-        """Read a JSON file or a compact recipe of at most 64 MB. Raises ValueError as :meth:`from_json`.
+        """Read a JSON file, a compact recipe of at most 64 MB, or a body of the :func:`library` by its name.
+
+        Raises ValueError as :meth:`from_json`.
 
         The image of a layer lies relative to the file; its path becomes one relative to the current folder, where every
         function looks for it.
@@ -203,6 +205,21 @@ class Recipe(Record):
         least = _arrays.positive(to, "to", 1e18)
         most = None if start is None else _arrays.positive(start, "start", 1e18)
         return Recipe(records(_synthesis.finish_recipe(_dumped(self, "recipe"), "recipe", _arrays.text(body, "body"), least, most)))
+
+
+def library() -> list[str]:
+    """Return the names of the measured bodies that come with the package, in alphabetical order.
+
+    Every function that takes the name of a recipe's file takes such a name, too.
+
+    Examples
+    --------
+    >>> "eros" in library()
+    True
+    >>> Recipe.read("eros").length_unit
+    'km'
+    """
+    return _synthesis.library_bodies()
 
 
 RecipeLike = Union[Recipe, Mapping[str, Any], PathLike]

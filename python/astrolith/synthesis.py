@@ -13,7 +13,7 @@ from astrolith._height_map import HeightMap, height_map
 from astrolith._mesh import Mesh, mesh_formats, read_mesh, write_mesh
 from astrolith._meshing import mesh, predict
 from astrolith._picture import render
-from astrolith._recipe import Recipe
+from astrolith._recipe import Recipe, library
 from astrolith._surface import SurfaceDescription, describe_surface, realism
 from astrolith._synth import synth
 from astrolith._texture import Texture, texture
@@ -34,6 +34,7 @@ __all__ = [
     "describe_surface",
     "gravity",
     "height_map",
+    "library",
     "mesh",
     "mesh_formats",
     "predict",

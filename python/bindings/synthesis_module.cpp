@@ -30,6 +30,7 @@
 #include "tasks/description/describe_file.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/description/variation_reference.h"
+#include "tasks/job/body_library.h"
 #include "tasks/synth/texture.h"
 
 namespace astrolith::python {
@@ -47,8 +48,10 @@ void bind_recipes(nb::module_& module) {
       },
       nb::arg("json"), nb::arg("name"), unlocked);
   module.def(
-      "read_recipe", [](const fs::path& file) { return recipe_to_json(read_recipe(file)); }, nb::arg("file"),
-      unlocked);
+      "read_recipe", [](const fs::path& file) { return recipe_to_json(read_recipe(find_body(file))); },
+      nb::arg("file"), unlocked);
+  module.def("find_body", &find_body, nb::arg("name"));
+  module.def("library_bodies", &library_bodies);
   module.def(
       "write_recipe",
       [](const std::string& json, const std::string& name, const fs::path& file) {

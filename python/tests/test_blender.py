@@ -157,6 +157,23 @@ print("SAID " + json.dumps(said))
     assert "is no recipe" in said[0] and "neither the package astrolith nor the program synth" in said[1]
 
 
+@pytest.mark.parametrize("by", ["package", "synth"])
+def test_a_measured_body_needs_no_file(blender, tmp_path, by):
+    script = tmp_path / "body.py"
+    archive = shutil.make_archive(str(tmp_path / "addon"), "zip", ADDON, "astrolith_addon")
+    option, place = source(by)
+    script.write_text(f"""
+import bpy, json
+bpy.ops.preferences.addon_install(filepath={archive!r})
+bpy.ops.preferences.addon_enable(module="astrolith_addon")
+bpy.context.preferences.addons["astrolith_addon"].preferences.{option[2:]} = {str(place)!r}
+bpy.ops.mesh.asteroid_add(body="ky26", resolution=24)
+made = bpy.context.object
+print("BODY " + json.dumps([made.name, made["made_by"], len(made.data.polygons)]))
+""")
+    assert blender("BODY", script) == ["ky26", by, len(astrolith.mesh("ky26", resolution=24).faces)]
+
+
 def test_the_tutorial_is_right_about_blender(blender, program, tmp_path):
     recipe = astrolith.Recipe.from_dict({**RECIPE, "layers": [{**PAINT, "height_rms": 0.02}]})
     recipe.write(tmp_path / "r.json")

@@ -100,6 +100,20 @@ except KeyboardInterrupt:
     assert done.stdout == "stopped\n" and done.stderr == ""
 
 
+def test_a_word_is_a_body_of_the_library(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert {"bennu", "eros", "itokawa"} <= set(astrolith.library())
+    recipe = astrolith.Recipe.read("eros")
+    assert recipe.description.startswith("433 Eros") and recipe.length_unit == "km"
+    figures = astrolith.synth("eros", output="eros.ply", resolution=24)
+    assert figures.closed and (tmp_path / "eros.ply").exists()
+    np.testing.assert_array_equal(astrolith.mesh("eros", resolution=24).faces, astrolith.mesh(recipe, resolution=24).faces)
+    assert astrolith.gravity("eros", 2670.0, resolution=24).figures.body.mass_kg == pytest.approx(6.7e15, rel=0.05)
+    for call in (astrolith.Recipe.read, astrolith.mesh, lambda word: astrolith.synth(word, output="x.ply")):
+        with pytest.raises(FileNotFoundError, match="^erso: is no file and no body of the library; did you mean eros"):
+            call("erso")
+
+
 def test_a_recipe_in_memory_has_a_name_and_leaves_no_file(tmp_path, monkeypatch):
     page = tmp_path / "share" / "astrolith" / "page.html"
     page.parent.mkdir(parents=True)

@@ -10,14 +10,16 @@
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/body_library.h"
 #include "tasks/job/load_recipe.h"
 #include "tasks/job/words.h"
 #include "tasks/repair/unit_question.h"
 
 namespace astrolith {
 
-GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file, const UnitChoice& unit,
+GravityBody read_gravity_body(const Job& job, const std::filesystem::path& name, const UnitChoice& unit,
                               int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures) {
+  const std::filesystem::path file = find_body(name);
   if (!is_recipe_name(file)) {
     const MeshUnit length_unit = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);

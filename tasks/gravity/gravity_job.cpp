@@ -16,6 +16,7 @@
 #include "tasks/gravity/gravity_outputs.h"
 #include "tasks/gravity/gravity_parts.h"
 #include "tasks/gravity/gravity_sites.h"
+#include "tasks/job/body_library.h"
 #include "tasks/job/density_question.h"
 #include "tasks/job/job.h"
 #include "tasks/job/json_text.h"
@@ -40,7 +41,8 @@ struct Arguments {
 
 void add_options(Job& job, Arguments& a) {
   OptionTable& app = job.options;
-  app.add_option("shape", a.shape, "closed mesh (" + read_mesh_words() + ") or recipe (.json, .astro)")
+  app.add_option("shape", a.shape,
+                 "closed mesh (" + read_mesh_words() + "), recipe (.json, .astro)" + kOrLibraryBody)
       .required()
       .placeholder("SHAPE")
       .reads(recipe_and_images);

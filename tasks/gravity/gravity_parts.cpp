@@ -6,6 +6,7 @@
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "tasks/gravity/gravity_input.h"
+#include "tasks/job/body_library.h"
 #include "tasks/job/density_question.h"
 
 namespace astrolith {
@@ -56,7 +57,7 @@ std::vector<BodyPart> read_parts(const Job& job, const std::string& words, const
   for (std::string word; std::getline(all, word, ',');) {
     const PartWord read = parse(word);
     question_density(job, read.density);
-    const bool recipe = is_recipe_name(read.file);
+    const bool recipe = is_recipe_name(find_body(read.file));
     nlohmann::ordered_json figures;  // the body's are those of the summary
     BodyPart part{
         read.file,

@@ -8,6 +8,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/body_library.h"
 #include "tasks/job/output_names.h"
 
 namespace astrolith {
@@ -97,7 +98,8 @@ std::vector<LandingSite> landing_sites(Job& job, const SitesRequest& request, co
   std::vector<LandingSite> sites = find_landing_sites(body, slopes->values, search, job.progress("sites"));
   std::erase_if(sites, [](const LandingSite& site) { return site.mean_slope > 90.0; });
   figures["sites"] = sites_json(sites, body);
-  const std::string recipe = is_recipe_name(shape) ? shape : "RECIPE.json";  // of a measured mesh, its fit
+  const std::string recipe =
+      is_recipe_name(find_body(shape)) ? shape : "RECIPE.json";  // of a measured mesh, its fit
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const LandingSite& site = sites[i];
     job.say(

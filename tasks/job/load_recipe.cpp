@@ -15,6 +15,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/png_reader.h"
+#include "tasks/job/body_library.h"
 
 namespace astrolith {
 namespace {
@@ -100,7 +101,7 @@ void load_images(Recipe& recipe, const std::filesystem::path& folder, const std:
 
 Recipe load_recipe(const std::filesystem::path& file) {
   require_no_input_of_fits(file);
-  Recipe recipe = read_recipe(file);
+  Recipe recipe = read_recipe(find_body(file));
   load_images(recipe, file.parent_path(), file.string());
   return recipe;
 }
@@ -128,9 +129,10 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
 }
 
 std::vector<std::filesystem::path> recipe_and_images(const std::vector<std::string>& names) {
-  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  std::vector<std::filesystem::path> files;
   for (const std::string& name : names) try {
-      for (const std::string& image : named_images(name))
+      files.push_back(find_body(name));
+      for (const std::string& image : named_images(files.back()))
         files.push_back(std::filesystem::path(name).parent_path() / image);
     } catch (const std::exception&) {  // is told where the recipe is read
     }

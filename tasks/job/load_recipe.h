@@ -9,9 +9,9 @@
 
 namespace astrolith {
 
-// Reads a recipe's file and decodes the images of its layers. Throws InputError as read_recipe()
-// does, and for an image that is missing, that has changed since the recipe was written, or that
-// decode_grey_png() refuses.
+// Reads the recipe of a file or of a body of the library (find_body()) and decodes the images of its layers.
+// Throws InputError as read_recipe() does, and for an image that is missing, that has changed since the
+// recipe was written, or that decode_grey_png() refuses.
 Recipe load_recipe(const std::filesystem::path& file);
 
 // Decodes the images of a recipe's layers, whose paths are relative to `folder`. `name` is the name

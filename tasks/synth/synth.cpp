@@ -19,6 +19,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "tasks/description/variation_reference.h"
+#include "tasks/job/body_library.h"
 #include "tasks/job/density_question.h"
 #include "tasks/job/job.h"
 #include "tasks/job/load_recipe.h"
@@ -54,10 +55,11 @@ struct SynthOptions {
 };
 
 void declare_options(Job& job, SynthOptions& options) {
-  Option recipe =
-      job.options.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
-          .default_text("")
-          .reads(recipe_and_images);
+  Option recipe = job.options
+                      .add_option("recipe", options.recipe,
+                                  "the recipe, a JSON file or a compact one (.astro)" + kOrLibraryBody)
+                      .default_text("")
+                      .reads(recipe_and_images);
   if (options.caller.recipe.empty()) recipe.required();
   job.options
       .add_option("-o,--output", options.mesh.sinks.file,

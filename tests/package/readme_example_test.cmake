@@ -53,7 +53,10 @@ if(value LESS 0.14999 OR value GREATER 0.15001 OR slope LESS -2.5001 OR slope GR
   message(FATAL_ERROR "value ${value} is not 0.15, or slope ${slope} not -2.5")
 endif()
 
-foreach(file share/astrolith/recipe.schema.json include/astrolith/recipe/recipe.h)
+# The installed program finds the installed library.
+run(${WORK}/prefix/bin/synth eros --resolution 16 -o eros.ply --quiet)
+
+foreach(file share/astrolith/library/SOURCES.md share/astrolith/recipe.schema.json include/astrolith/recipe/recipe.h)
   if(NOT EXISTS ${WORK}/prefix/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()

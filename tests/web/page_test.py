@@ -104,7 +104,7 @@ class Synth:
     def run(self, text, name, cells=CELLS):
         """The hash of synth's mesh and its message."""
         with tempfile.TemporaryDirectory() as folder:
-            (pathlib.Path(folder) / name).write_text(text)
+            (pathlib.Path(folder) / name).write_bytes(text if isinstance(text, bytes) else text.encode())
             command = [self.program, name, "-o", "mesh.ply", "--resolution", str(cells), "--quiet"]
             ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
             mesh = pathlib.Path(folder) / "mesh.ply"
@@ -133,6 +133,14 @@ def check_slider(page, synth):
     page.driver.find_element(By.ID, "undo").click()
     page.settled()
     check(page.mesh_hash() == before, "undo does not bring the mesh back")
+
+
+def check_library(page, synth):
+    """A measured body of the list is the one of synth's library."""
+    page.script("const list = document.getElementById('examples'); list.value = 'ky26.json'; list.dispatchEvent(new Event('change'))")
+    page.wait(lambda: page.recipe().get("description", "").startswith("1998 KY26"))
+    page.set_cells(CELLS)
+    check(page.mesh_hash() == synth.run((ROOT / "library/ky26.astro").read_bytes(), "ky26.astro")[0], "the body is not synth's")
 
 
 def check_layers(page):
@@ -255,6 +263,7 @@ def main():
         page.settled()
         check("triangles" in page.text("figures"), f"no body after the start: {page.text('figures')!r}")
         check_slider(page, synth)
+        check_library(page, synth)
         check_layers(page)
         check_refusal(page, synth)
         check_bad_files(page, synth)
@@ -266,7 +275,7 @@ def main():
     finally:
         driver.quit()
     check_phone(address)
-    print("page: slider, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
+    print("page: slider, measured bodies, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
     return 0
 
 

@@ -4,7 +4,7 @@
     build_page.py --core FOLDER --three FOLDER --output page.html
 
 The core is astrolith_core.js and .wasm of FOLDER, three.js is Debian's libjs-three. Examples are all recipes of
-synthesis/examples. The recipe that the page opens first can be put in later: see the element `recipe` of page.html.
+synthesis/examples and the bodies of library/. The recipe that the page opens first can be put in later: see the element `recipe` of page.html.
 """
 
 import argparse
@@ -30,13 +30,19 @@ def examples():
     return [{"name": file.name, "text": file.read_text()} for file in sorted((ROOT / "synthesis/examples").glob("*.json"))]
 
 
+def library():
+    """The measured bodies, compact recipes in base 64. The page calls every recipe by the name of its JSON."""
+    files = sorted((ROOT / "library").glob("*.astro"))
+    return [{"name": file.stem + ".json", "bytes": base64.b64encode(file.read_bytes()).decode()} for file in files]
+
+
 def constants(core):
     worker = [core / "astrolith_core.js", HERE / "core_calls.js", HERE / "core_worker.js"]
     page = {
         "worker": "\n".join(file.read_text() for file in worker),
         "core": base64.b64encode((core / "astrolith_core.wasm").read_bytes()).decode(),
         "schema": json.loads((ROOT / "recipe/recipe.schema.json").read_text()),
-        "examples": examples(),
+        "examples": examples() + library(),
         "first": FIRST,
     }
     return "const PAGE = " + json.dumps(page) + ";"

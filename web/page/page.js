@@ -180,10 +180,15 @@
   }
   const openText = (text, name) => openBytes(encoded(text), name);
   const openFile = file => openBytes(file.arrayBuffer().then(buffer => new Uint8Array(buffer)), file.name);
-  const openExample = example => openText(example.text, example.name);
+  const openExample = example => openBytes(example.bytes ? bytesOf(example.bytes) : encoded(example.text), example.name);
 
   at("examples").append(new Option("own recipe", ""));
-  for (const {name} of PAGE.examples) at("examples").append(new Option(name.replace(".json", "").replace(/_/g, " "), name));
+  for (const label of ["measured bodies", "examples"]) {
+    const group = at("examples").appendChild(document.createElement("optgroup"));
+    group.label = label;
+    const chosen = PAGE.examples.filter(({bytes}) => (bytes !== undefined) === (label === "measured bodies"));
+    group.append(...chosen.map(({name}) => new Option(name.replace(".json", "").replace(/_/g, " "), name)));
+  }
   at("examples").onchange = () => {
     const example = PAGE.examples.find(({name}) => name === at("examples").value);
     if (example) openExample(example);

@@ -263,24 +263,52 @@ def add_maps(material, images):
         links.new(bend.outputs["Normal"], surface.inputs["Normal"])
 
 
-def read_recipe(file):
+def library(operator, context, edited):
+    """The bodies that come with Astrolith, for the search of a field."""
+    made_by = package()
+    if made_by:
+        return made_by.library()
+    program = shutil.which(bpy.path.abspath(preferences().synth)) or ""
+    folder = os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(program))), "share", "astrolith", "library")
+    return sorted(name[:-6] for name in os.listdir(folder) if name.endswith(".astro")) if os.path.isdir(folder) else []
+
+
+def json_of(file, astrolith):
+    """The recipe of a compact file or of a body of the library. Its heights are none of the add-on's business."""
     try:
-        with open(file, encoding="utf-8") as stream:
-            recipe = json.load(stream)
+        if astrolith:
+            return astrolith.Recipe.read(file)
+    except ValueError as error:
+        raise RecipeError(str(error)) from None
+    with tempfile.TemporaryDirectory() as folder:
+        output = os.path.join(folder, "recipe.json")
+        run_synth([file, "--write-recipe", output])
+        with open(output, encoding="utf-8") as stream:
+            return json.load(stream)
+
+
+def read_recipe(file, astrolith):
+    try:
+        if os.path.splitext(file)[1] in ("", ".astro"):
+            recipe = json_of(file, astrolith)
+        else:
+            with open(file, encoding="utf-8") as stream:
+                recipe = json.load(stream)
         unit = recipe["length_unit"]
     except (OSError, ValueError, KeyError, TypeError):
-        raise RecipeError(f"{file}: is no recipe; choose a .json file of fit_shape or of synthesis/examples") from None
+        raise RecipeError(f"{file}: is no recipe; choose a file of fit_shape or of synthesis/examples") from None
     if unit not in METRES or not recipe.get("body"):
         raise RecipeError(f"{file}: has no body; choose a recipe with one")
     return recipe
 
 
 def make_asteroid(file, resolution, seed, longest_side, maps=0):
-    """A new object: the body of a recipe, in metres, or scaled to `longest_side` Blender units where that is above 0.
+    """A new object: the body of a recipe or of the library, in metres, or scaled to `longest_side` Blender units where that is above 0.
 
     With `maps` above 0 it has baked maps of so many texels along a side.
     """
-    recipe, astrolith = read_recipe(file), package()
+    astrolith = package()
+    recipe = read_recipe(file, astrolith)
     labels = not recipe.get("erosion") and bool(recipe.get("layers"))
     by = (lambda *options: body_by_package(astrolith, *options)) if astrolith else body_by_program
     images = {}
@@ -314,7 +342,9 @@ class AddAsteroid(bpy.types.Operator, ImportHelper):
     bl_options = {"REGISTER", "UNDO"}
     filename_ext = ".json"
 
-    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.json;*.astro", options={"HIDDEN"})
+    body: StringProperty(name="Body", search=library,
+                         description="A measured body of the library, such as eros, in place of the file")
     resolution: IntProperty(name="Resolution", default=128, min=4, max=2048,
                             description="Cells along the longest side; twice as many make four times the triangles")
     own_seed: BoolProperty(name="The recipe's seed", default=True)
@@ -327,7 +357,7 @@ class AddAsteroid(bpy.types.Operator, ImportHelper):
 
     def execute(self, context):
         try:
-            made = make_asteroid(bpy.path.abspath(self.filepath), self.resolution,
+            made = make_asteroid(self.body or bpy.path.abspath(self.filepath), self.resolution,
                                  None if self.own_seed else self.seed, self.longest_side, self.maps)
         except RecipeError as error:
             self.report({"ERROR"}, str(error))
