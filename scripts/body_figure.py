@@ -4,6 +4,7 @@
     body_figure.py SHAPE.ply RECIPE.astro [...] -o measured_and_recipes.jpg   # measured bodies above the meshes of their recipes
     body_figure.py RECIPE.astro [...] -o likeness.jpg                         # recipes above others with their heights drawn anew
     body_figure.py ITOKAWA.astro --sheet 8 -o thousand.jpg                    # the first 64 seeds of one body
+    body_figure.py --library 6 -o library.jpg                                 # the bodies of the library, six in a row
 
 Needs the Python package (build/ci/python in PYTHONPATH) and Pillow. Recipes: fit_shape SHAPE.ply -o RECIPE.astro --spheres 80
 """
@@ -24,12 +25,16 @@ def shot(body, view, triangles=1e6, size=(620, 420)):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+")
+    parser.add_argument("files", nargs="*")
     parser.add_argument("--sheet", type=int, metavar="SIDE", help="a square of likenesses of the first recipe")
+    parser.add_argument("--library", type=int, metavar="COLUMNS", help="a sheet of the bodies of the library")
     parser.add_argument("-o", dest="output", required=True)
     given = parser.parse_args()
     recipes = [astrolith.Recipe.read(file) for file in given.files if file.endswith(".astro")]
-    if given.sheet:
+    if given.library:
+        shots = [shot(astrolith.Recipe.read(name), (1.0, 0.6, 0.5), 2e5, (250, 200)) for name in astrolith.library()]
+        rows = [shots[first:first + given.library] for first in range(0, len(shots), given.library)]
+    elif given.sheet:
         shots = [shot(recipes[0].like(seed), VIEWS[0], 4e4, (180, 120)) for seed in range(given.sheet**2)]
         rows = [shots[first:first + given.sheet] for first in range(0, len(shots), given.sheet)]
     elif len(recipes) < len(given.files):
