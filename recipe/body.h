@@ -113,6 +113,7 @@ inline constexpr double kMostElongation = 5.0;  // the largest ratio of two half
 // (synthesis/body/morph_grid.h).
 struct Morph {
   Vec3d half_axes{1.0, 1.0, 1.0};  // length units, > 0
+  Vec3d center;                    // of the ellipsoid, length units
   double roughness = 1.0;          // [0, 3]
   std::vector<Donor> donors;       // kLeastDonors .. kMostDonors
 };

@@ -101,11 +101,7 @@ void check_groups(const MetaballBody& body, const Place& place) {
 void check_donor(const Donor& donor, const Place& place) {
   const Place at = place.field("body");
   if (donor.body.size() != 1) at.fail("must be one body");
-  const MetaballBody& body = donor.body.front();
-  if (body.morph) at.field("type").fail("must be \"metaballs\" in a donor");
-  if (!body.operations.empty() || !body.groups.empty() || body.warp) {
-    at.fail("has operations, groups or a warp; a donor is metaballs alone");
-  }
+  check_plain_metaballs(donor.body.front(), at);
 }
 
 void check_morph(const Morph& morph, const Place& place) {
@@ -124,6 +120,13 @@ void check_morph(const Morph& morph, const Place& place) {
 }
 
 }  // namespace
+
+void check_plain_metaballs(const MetaballBody& body, const Place& place) {
+  if (body.morph) place.field("type").fail("must be \"metaballs\" here");
+  if (!body.operations.empty() || !body.groups.empty() || body.warp) {
+    place.fail("has operations, groups or a warp; a donor is metaballs alone");
+  }
+}
 
 void visit_row(FieldVisitor& v, bool (&mirror)[3]) { v.array("flag", {&mirror[0], &mirror[1], &mirror[2]}); }
 
@@ -189,6 +192,7 @@ namespace {
 // The fields of a body of type "morph", but for its operations.
 void visit_morph(FieldVisitor& v, Morph& morph) {
   v.required("half_axes", morph.half_axes, kPositive);
+  v.field_if(!(morph.center == Vec3d{}), "center", morph.center, kAnyNumber);
   v.field("roughness", morph.roughness, range(0.0, 3.0));
   v.rule(check_morph, morph);
   v.required("donors", morph.donors);

@@ -20,6 +20,11 @@ void check_family(const Recipe& recipe, const Place& place);
 void visit_row(FieldVisitor& v, Vec3d& vector, const NumberLimits& limits);
 void visit_fields(FieldVisitor& v, MetaballBody& body);
 void visit_fields(FieldVisitor& v, Donor& donor);
+// Fails for all but metaballs without operations, groups and warp.
+void check_plain_metaballs(const MetaballBody& body, const Place& place);
+void visit_fields(FieldVisitor& v, BodyPopulation& population);
+void visit_fields(FieldVisitor& v, MeasuredBody& body);
+void visit_fields(FieldVisitor& v, DrawConditions& draw);
 void visit_fields(FieldVisitor& v, BodyOperation& operation);
 void visit_fields(FieldVisitor& v, Warp& warp);
 // The fields of a fractal sum that follow its frequency, and the limit on the frequency of its last octave.

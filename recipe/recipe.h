@@ -18,6 +18,7 @@
 #include "recipe/family.h"
 #include "recipe/landforms.h"
 #include "recipe/noise_layers.h"
+#include "recipe/population.h"
 #include "recipe/relief_layer.h"
 
 namespace astrolith {
@@ -174,10 +175,11 @@ struct Recipe {
   Vec3d origin;
   std::uint64_t seed = 1;  // below 2^53, so that every JSON reader keeps it exact
   Provenance provenance;
-  std::optional<MetaballBody> body;  // fit_gabor writes recipes without a body
-  std::vector<Layer> layers;         // at least one in a recipe without a body
-  std::optional<Erosion> erosion;    // only in a recipe with a body
-  std::optional<Family> family;      // what differs between members; the recipe itself stands for none
+  std::optional<MetaballBody> body;          // fit_gabor writes recipes without a body
+  std::optional<BodyPopulation> population;  // only in a recipe without a body
+  std::vector<Layer> layers;                 // at least one in a recipe without a body and a population
+  std::optional<Erosion> erosion;            // only in a recipe with a body
+  std::optional<Family> family;  // what differs between members; the recipe itself stands for none
 };
 
 }  // namespace astrolith

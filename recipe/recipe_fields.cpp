@@ -79,11 +79,17 @@ void check_seed(const Recipe& recipe, const Place& place) {
 }
 
 void check_parts_of_recipe(const Recipe& recipe, const Place& place) {
-  if (!recipe.body && recipe.layers.empty()) place.fail("has neither a body nor layers; add one of them");
+  if (!recipe.body && !recipe.population && recipe.layers.empty()) {
+    place.fail("has neither a body nor layers; add one of them");
+  }
+  if (recipe.body && recipe.population) {
+    place.field("population").fail("draws bodies, and the recipe has one already; leave one of them out");
+  }
   if (recipe.length_unit == "body" && recipe.body) {
     place.field("length_unit").fail("is \"body\", which is for layers without a body; state \"m\" or \"km\"");
   }
-  if (recipe.erosion && !recipe.body) place.field("erosion").fail("needs a body; add one, or leave it out");
+  if (recipe.erosion && !recipe.body && !recipe.population)
+    place.field("erosion").fail("needs a body; add one, or leave it out");
 }
 
 // The version is the first field, since the fields of another version would only be reported as unknown.
@@ -161,6 +167,7 @@ void visit_fields(FieldVisitor& v, Recipe& recipe) {
   v.field("provenance", recipe.provenance);
   v.rule(check_parts_of_recipe, recipe);
   v.field("body", recipe.body);
+  v.field("population", recipe.population);
   v.field("layers", recipe.layers);
   v.rule(check_layer_uses, recipe);
   v.field("erosion", recipe.erosion);

@@ -336,10 +336,10 @@ SplineGrid make_morph_grid(const Morph& morph, ArrayStore& arrays) {
   SplineGrid grid;
   grid.coefficients = arrays.add(coefficients);
   std::copy(nodes.count.begin(), nodes.count.end(), grid.count);
-  grid.first = to_float(nodes.first);
+  grid.first = to_float(morph.center + nodes.first);
   grid.spacing = static_cast<float>(nodes.spacing);
-  grid.low = to_float(nodes.at({1, 1, 1}));
-  grid.high = to_float(nodes.at({nodes.count[0] - 2, nodes.count[1] - 2, nodes.count[2] - 2}));
+  grid.low = to_float(morph.center + nodes.at({1, 1, 1}));
+  grid.high = to_float(morph.center + nodes.at({nodes.count[0] - 2, nodes.count[1] - 2, nodes.count[2] - 2}));
   return grid;
 }
 

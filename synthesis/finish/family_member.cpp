@@ -48,20 +48,11 @@ Vec3d any_direction(double least_z, CounterRandom random) {
   return {across * portable::cos(angle), across * portable::sin(angle), z};
 }
 
-}  // namespace
-
-FamilyMember family_member(const Recipe& recipe, std::uint64_t number) {
-  const std::uint64_t seed = recipe.family ? CounterRandom(recipe.seed, number).next() >> 11 : number;
-  FamilyMember member{recipe,
-                      {},
-                      any_direction(-1.0, CounterRandom(seed, kView)),
-                      any_direction(0.0, CounterRandom(seed, kSun))};
-  member.recipe.family.reset();
-  member.recipe.seed = seed;
-  if (!recipe.family) return member;
+// Draws the fields of a family for a member with this seed.
+void draw_fields(const Family& family, std::uint64_t seed, FamilyMember& member) {
   std::vector<std::string_view> fields;
   std::vector<double> numbers;
-  for (const DrawnField& drawn : recipe.family->fields) {
+  for (const DrawnField& drawn : family.fields) {
     CounterRandom random(seed, kFirstField + fields.size());
     fields.push_back(drawn.field);
     numbers.push_back(draw(drawn, random));
@@ -69,6 +60,25 @@ FamilyMember family_member(const Recipe& recipe, std::uint64_t number) {
   }
   set_numbers(member.recipe, fields, numbers);
   validate_recipe(member.recipe, "recipe");
+}
+
+}  // namespace
+
+FamilyMember family_member(const Recipe& recipe, std::uint64_t number) {
+  const std::uint64_t seed =
+      recipe.family || recipe.population ? CounterRandom(recipe.seed, number).next() >> 11 : number;
+  FamilyMember member{recipe,
+                      {},
+                      {},
+                      any_direction(-1.0, CounterRandom(seed, kView)),
+                      any_direction(0.0, CounterRandom(seed, kSun))};
+  member.recipe.family.reset();
+  member.recipe.seed = seed;
+  if (recipe.family) draw_fields(*recipe.family, seed, member);
+  if (recipe.population) {
+    member.body = draw_body(member.recipe);
+    member.recipe = member.body->recipe;
+  }
   return member;
 }
 

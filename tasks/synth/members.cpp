@@ -165,8 +165,8 @@ class MemberMaker {
       }
     }
     if (mesh.sinks.wanted()) make_mesh(job, mesh, member.recipe, source_.file);
-    for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
-                               "closed", "manifold", "genus", "components"}) {
+    for (const char* figure : {"drawn_body", "similarity", "similarity_with", "variation", "vertices",
+                               "triangles", "closed", "manifold", "genus", "components"}) {
       if (job.summary.contains(figure)) line[figure] = job.summary[figure];
     }
     if (!mesh.sinks.recipe.empty()) write_loaded_recipe(member.recipe, mesh.sinks.recipe);

@@ -25,6 +25,7 @@
 #include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/synth/body_mesh.h"
+#include "tasks/synth/draws.h"
 #include "tasks/synth/finish.h"
 #include "tasks/synth/members.h"
 #include "tasks/synth/mesh_job.h"
@@ -45,6 +46,7 @@ struct SynthOptions {
   TextureRequest texture;
   MembersRequest members;
   FinishOptions finish;
+  DrawOptions draw;
   bool like = false;  // whether reliefs are drawn anew
   bool fill_unseen = false;
   std::string count;  // of bodies, an option that --members replaces
@@ -86,6 +88,7 @@ void declare_options(Job& job, SynthOptions& options) {
       .needs(job.options.option("--base"))
       .check(one_of({"units", "body", "edges"}))
       .placeholder("WHAT");
+  declare_draw_options(job, options.draw);
   declare_finish_options(job, options.finish);
   job.options.add_flag("--like", options.like,
                        "another body of the kind: the measured heights of the recipe's relief are drawn for "
@@ -198,6 +201,7 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
     change_reliefs(recipe, options.recipe, "--finer continues",
                    [&](ReliefLayer& relief) { relief.finer = options.finer; });
   }
+  apply_conditions(job, options.draw, options.recipe, recipe);
   // A variation has the seed as its number, and members have numbers of their own.
   const bool is_one_variation = options.vary > 0.0 && options.members.range.empty();
   if (job.options.option("--seed").count() > 0 && !is_one_variation) recipe.seed = job.seed;
@@ -259,20 +263,33 @@ void check_outputs(const Job& job, const SynthOptions& options) {
 
 // Refuses members that would not differ as the options say.
 void check_members_of(const Job& job, const Recipe& recipe) {
-  if (!recipe.family && job.options.option("--seed").count() > 0)
+  if (!recipe.family && !recipe.population && job.options.option("--seed").count() > 0)
     throw InputError(
         "--seed: bodies of --members have their numbers as seeds, but for those of a family; leave "
         "out --seed, and name other numbers");
+}
+
+// The body that a recipe's population gives by the recipe's own seed.
+FamilyMember single_draw(const Recipe& recipe) {
+  FamilyMember member{{}, {}, draw_body(recipe), {}, {}};
+  member.recipe = member.body->recipe;
+  return member;
 }
 
 void synthesize(Job& job, const SynthOptions& options) {
   check_outputs(job, options);
   const bool makes_mesh = options.mesh.sinks.wanted() && options.texture.size.empty();
   const std::future<void> start = makes_mesh ? options.mesh.device.start() : std::future<void>();
-  const Recipe recipe = read_input(job, options);
+  Recipe recipe = read_input(job, options);
+  const bool has_members = !options.members.range.empty();
+  if (recipe.population && !has_members) {
+    const FamilyMember drawn = single_draw(recipe);
+    report_draw(job, drawn);
+    recipe = drawn.recipe;
+  }
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
-  require_body(recipe, options.recipe);
+  if (!recipe.population) require_body(recipe, options.recipe);
   const std::vector<fs::path>& prefixes = options.caller.prefixes;
   if (!options.page.empty())
     check_page(recipe, options.recipe, prefixes);  // before a variation is searched for
@@ -283,12 +300,21 @@ void synthesize(Job& job, const SynthOptions& options) {
     return finished(part, options.finish, varied(part, options, of, seed), file.string(), patch_side);
   };
   const bool is_varied = options.vary > 0.0;
-  const Recipe whole = is_varied ? recipe : finished(job, options.finish, recipe, file.string(), patch_side);
-  if (!options.members.range.empty()) {
+  const Recipe whole = is_varied || recipe.population
+                           ? recipe
+                           : finished(job, options.finish, recipe, file.string(), patch_side);
+  if (has_members) {
     check_members_of(job, recipe);
     const auto draw = [&](Job& part, std::uint64_t number) {
+      if (recipe.population) {
+        FamilyMember member = family_member(recipe, number);
+        report_draw(part, member);
+        member.recipe = is_varied ? variation(part, member.recipe, number)
+                                  : finished(part, options.finish, member.recipe, file.string(), patch_side);
+        return member;
+      }
       if (!is_varied) return family_member(whole, number);
-      if (!recipe.family) return FamilyMember{variation(part, recipe, number), {}, {}, {}};
+      if (!recipe.family) return FamilyMember{variation(part, recipe, number), {}, {}, {}, {}};
       FamilyMember member = family_member(recipe, number);
       member.recipe = variation(part, member.recipe, number);
       return member;

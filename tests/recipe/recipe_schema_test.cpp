@@ -114,6 +114,12 @@ Donor donor() {
   return donor;
 }
 
+MeasuredBody measured_body() {
+  MeasuredBody body;
+  body.body.emplace_back();
+  return body;
+}
+
 BodyOperation operation(Operator kind) {
   BodyOperation operation;
   operation.kind = kind;
@@ -137,6 +143,9 @@ std::map<std::string, Fields> described() {
           {"metaballs", fields_of(MetaballBody{})},
           {"morph", fields_of(morph())},
           {"donor", fields_of(donor())},
+          {"population", fields_of(BodyPopulation{})},
+          {"draw", fields_of(DrawConditions{})},
+          {"measured_body", fields_of(measured_body())},
           {"r_function", fields_of(operation(Operator::kUnion))},
           {"blend", fields_of(operation(Operator::kBlend))},
           {"clean_union", fields_of(operation(Operator::kCleanUnion))},

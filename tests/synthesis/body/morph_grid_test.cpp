@@ -31,7 +31,7 @@ Donor donor_of(const MetaballBody& body, const Vec3d& half_axes, double share) {
 
 MetaballBody morph_of(const Vec3d& half_axes, std::vector<Donor> donors) {
   MetaballBody body;
-  body.morph = Morph{half_axes, 1.0, std::move(donors)};
+  body.morph = Morph{half_axes, {}, 1.0, std::move(donors)};
   return body;
 }
 
