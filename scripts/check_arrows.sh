@@ -56,7 +56,7 @@ tasks/repair               -> numerics geometry tasks/job
 tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair
 tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
 tasks/synth                -> numerics recipe geometry gravity synthesis cuda tasks/job tasks/gravity tasks/description
-tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
+tasks/estimation           -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
 web/core                   -> numerics recipe geometry gravity synthesis tasks/synth
 python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python

@@ -114,7 +114,9 @@ class BodyTable {
         return;
       }
     }
-    fail(row, column, "is no known " + column + ": " + word);
+    std::vector<std::string_view> known;
+    for (const T candidate : values) known.push_back(word_of(candidate));
+    fail(row, column, fmt::format("must be one of {}, is {}", fmt::join(known, ", "), word));
   }
   void set_number(const Row& row, const std::string& column, double& value) const {
     const std::string& word = text(row, column);

@@ -76,7 +76,8 @@ TEST_F(FitPopulation, RefusesWhatIsNoMeasuredBody) {
   write("t.csv", "who,source\na,b\n");
   refuse("potato.json ball.json -o p.json --table t.csv", "no column called name");
   write("u.csv", "name,source\nball,sonar\n");
-  refuse("potato.json ball.json -o p.json --table u.csv", "u.csv: ball: source: is no known source: sonar");
+  refuse("potato.json ball.json -o p.json --table u.csv",
+         "u.csv: ball: source: must be one of camera, radar, adaptive_optics, light_curve, is sonar");
 }
 
 TEST_F(FitPopulation, GivesBodiesThatSynthDraws) {
