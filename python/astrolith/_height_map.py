@@ -76,18 +76,18 @@ def height_map(
     Raises
     ------
     ValueError
-        There is no surface in the patch, the recipe is in pixels, or an argument is wrong.
+        There is no surface in the patch or beside it, the recipe is in pixels, or an argument is wrong.
     """
     resolution = _arrays.integer(resolution, "resolution", 4, 8192)
     made = mesh(
         recipe, patch=patch, aligned=aligned, resolution=resolution, seed=seed, threads=threads, progress=progress
     )
-    center = _arrays.vector(patch, "patch", 4)
+    side = _arrays.vector(patch, "patch", 4)[3]
     unit = _arrays.choice(made.length_unit, "recipe.length_unit", _UNITS)
     vertices = made.vertices.astype(np.float64)
     plane = made.figures.get("map_plane")
     if plane is None:
         raise ValueError("patch: the surface in it faces no direction; take a smaller one")
     rows = [plane["right"], plane["ahead"], plane["up"], plane["origin"]]
-    fields = _synthesis.height_map(vertices, made.faces, center[:3], center[3], resolution, unit, rows)
+    fields = _synthesis.height_map(vertices, made.faces, made.origin or (0.0, 0.0, 0.0), side, resolution, unit, rows)
     return HeightMap(**fields, body_frame=made.frame)

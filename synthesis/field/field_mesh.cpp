@@ -10,24 +10,13 @@ constexpr int kCoarseBlockCells = 4;
 
 }  // namespace
 
-MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int resolution, MeshSink& sink,
-                          const Progress& progress, MeshTile tile) {
-  return mesh_field<kBlockCells>(field, bounds, resolution, sink, progress, tile);
-}
-
-MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, MeshSink& sink,
-                          const Progress& progress) {
-  return mesh_patch<kBlockCells>(field, size, resolution, sink, progress);
-}
-
-EvenStatistics even_mesh(const ImplicitField& field, double step, RecordedMesh& mesh,
-                         const Progress& progress) {
-  return even_mesh<ImplicitField>(field, step, mesh, progress);
-}
-
-EvenStatistics even_mesh(const PatchField& field, double step, RecordedMesh& mesh, const Progress& progress) {
-  return even_mesh<PatchField>(field, step, mesh, progress);
-}
+template MeshStatistics mesh_field<kBlockCells>(const ImplicitField&, const Box&, int, MeshSink&,
+                                                const Progress&, MeshTile);
+template MeshStatistics mesh_patch<kBlockCells>(const PatchField&, double, int, MeshSink&, const Progress&);
+template EvenStatistics even_mesh(const ImplicitField&, double, RecordedMesh&, const Progress&);
+template EvenStatistics even_mesh(const PatchField&, double, RecordedMesh&, const Progress&);
+template ProbeFigures probe_surface<kBlockCells>(const ImplicitField&, const ProbedMesh&, int);
+template ProbeFigures probe_surface<kBlockCells>(const PatchField&, const ProbedMesh&, int);
 
 TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made) {
   MeshCollector collector;
@@ -43,14 +32,6 @@ TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int reso
   const MeshStatistics statistics = mesh_patch<kCoarseBlockCells>(field, patch_size, resolution, collector);
   if (made != nullptr) *made = statistics;
   return std::move(collector.mesh);
-}
-
-ProbeFigures probe_surface(const ImplicitField& field, const ProbedMesh& mesh, int count) {
-  return probe_surface<kBlockCells>(field, mesh, count);
-}
-
-ProbeFigures probe_surface(const PatchField& field, const ProbedMesh& mesh, int count) {
-  return probe_surface<kBlockCells>(field, mesh, count);
 }
 
 }  // namespace astrolith

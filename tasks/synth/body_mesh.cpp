@@ -233,19 +233,6 @@ void mesh_without_crumbs(const MeshPart& part, MeshSink& sink, const StageProgre
   filter.finish();
 }
 
-// Meshes the part as above, makes its triangles more even, and passes them on in the same batches.
-void mesh_evenly(const MeshPart& part, MeshSink& sink, const StageProgress& progress,
-                 BodyMeshReport& result) {
-  RecordedMesh mesh;
-  mesh_without_crumbs(part, mesh, progress, result);
-  const double step = result.statistics.step;
-  result.even = part.region.is_patch
-                    ? even_mesh(PatchField(part.field, part.region.center), step, mesh, progress("even"))
-                    : even_mesh(part.field, step, mesh, progress("even"));
-  result.statistics.evaluations += result.even->evaluations;
-  mesh.replay(sink);
-}
-
 }  // namespace
 
 Region region_of(const MeshSpec& spec) {
@@ -350,8 +337,17 @@ BodyMeshReport make_body_mesh(const MeshPart& part, MeshSink& sink, const StageP
   sinks.add(check);
   sinks.add(sink);
   BodyMeshReport result;
-  const auto mesh = part.spec.even ? mesh_evenly : mesh_without_crumbs;
-  mesh(part, sinks, progress, result);
+  RecordedMesh recorded;
+  mesh_without_crumbs(part, part.spec.even ? static_cast<MeshSink&>(recorded) : sinks, progress, result);
+  if (part.spec.even) {
+    const double step = result.statistics.step;
+    const Progress evening = progress("even");
+    result.even = part.region.is_patch
+                      ? even_mesh(PatchField(part.field, part.region.center), step, recorded, evening)
+                      : even_mesh(part.field, step, recorded, evening);
+    result.statistics.evaluations += result.even->evaluations;
+    recorded.replay(sinks);  // in the same batches
+  }
   result.manifold = check.finish();
   if (result.manifold.triangles > 0) {
     require_closed_manifold(result.manifold, result.statistics);

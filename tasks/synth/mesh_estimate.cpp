@@ -91,8 +91,9 @@ ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, 
   const ProbedMesh mesh{surface, grid_of(resolution).step, reach, twice};
   most_probes_ = std::max(most_probes_, count);
   const ProbeFigures figures =
-      region_.is_patch ? probe_surface(PatchField(field_, region_.center, region_.axes), mesh, count)
-                       : probe_surface(field_, mesh, count);
+      region_.is_patch
+          ? probe_surface<kBlockCells>(PatchField(field_, region_.center, region_.axes), mesh, count)
+          : probe_surface<kBlockCells>(field_, mesh, count);
   evaluations_ += figures.evaluations;
   last_ = {mesh.step, count, figures};
   return figures;

@@ -38,7 +38,7 @@ TEST(EvenField, ABodyWithLayersLiesOnItsSurface) {
     RecordedMesh mesh = plain_mesh(field, resolution, step);
     const ManifoldReport before = report_of(mesh);
     const std::vector<MeshVertex> plain = mesh.vertices;
-    const EvenStatistics done = even_mesh(field, step, mesh);
+    const EvenStatistics done = even_mesh(field, step, mesh, {});
     EXPECT_GT(done.after.first_percentile, 0.45) << resolution;
     EXPECT_GT(done.after.mean, 0.85);
     EXPECT_LT(done.before.first_percentile, 0.1);
@@ -62,12 +62,12 @@ TEST(EvenField, SameBytesForAnyThreads) {
   double step = 0.0;
   const RecordedMesh plain = plain_mesh(field, 48, step);
   RecordedMesh first = plain;
-  even_mesh(field, step, first);
+  even_mesh(field, step, first, {});
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     const ImplicitField again(layered_recipe());
     RecordedMesh mesh = plain_mesh(again, 48, step);
-    even_mesh(again, step, mesh);
+    even_mesh(again, step, mesh, {});
     ASSERT_EQ(mesh.vertices.size(), first.vertices.size());
     EXPECT_EQ(
         std::memcmp(mesh.vertices.data(), first.vertices.data(), first.vertices.size() * sizeof(MeshVertex)),
@@ -85,7 +85,7 @@ TEST(EvenField, APatchIsEvenButForItsCuts) {
   RecordedMesh mesh;
   const MeshStatistics made = mesh_patch(patch, 0.05, 64, mesh);
   const ManifoldReport before = report_of(mesh);
-  const EvenStatistics done = even_mesh(patch, made.step, mesh);
+  const EvenStatistics done = even_mesh(patch, made.step, mesh, {});
   EXPECT_EQ(report_of(mesh).open_vertices, before.open_vertices);
   EXPECT_GE(done.kept, before.open_vertices);
   EXPECT_LT(done.kept, 2 * before.open_vertices);
