@@ -1,7 +1,8 @@
+#include <fmt/format.h>
+
 // Adds a recipe's layers to the field model that holds its body, in the recipe's order.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -151,13 +152,11 @@ class LayerStack {
   // Throws InputError where the elevations could reach the height limit.
   void check_heights() const {
     if (!first_too_high_) return;
-    char words[160];
-    std::snprintf(words, sizeof words,
-                  ": heights of up to %.3g would fill the space around the body; make them smaller, all "
-                  "heights together at most %.3g",
-                  stack_.model.height_bound, height_limit_);
     const Layer& layer = stack_.recipe.layers[static_cast<std::size_t>(*first_too_high_)];
-    throw InputError(stack_.place_of(*first_too_high_) + "." + std::string(height_field(layer)) + words);
+    throw InputError(fmt::format(
+        "{}.{}: heights of up to {:.3g} would fill the space around the body; make them smaller, "
+        "all heights together at most {:.3g}",
+        stack_.place_of(*first_too_high_), height_field(layer), stack_.model.height_bound, height_limit_));
   }
 
   StackState stack_;

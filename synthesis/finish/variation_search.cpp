@@ -1,8 +1,9 @@
 #include "synthesis/finish/variation_search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,12 +24,6 @@ constexpr double kLeastStrength = 0x1p-7;
 constexpr int kHalvings = 4;  // of the gap between the strongest that will do and one that will not
 constexpr std::int64_t kSamples = 20000;  // points of each surface, for the distance between the two
 constexpr std::uint64_t kDistanceSeed = 1;
-
-std::string printed(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 // The recipe's own body, with which all variations are compared.
 struct Original {
@@ -80,8 +75,8 @@ class Search {
   // The variation of a strength, or nothing where it will not do.
   std::optional<Variation> attempt(VariedNoise noise, double strength) {
     constexpr double kMostAttempts = 26.0;
-    stopped_ =
-        stopped_ || !report(progress_, ++attempts_ / kMostAttempts, "strength " + printed("%.4f", strength));
+    stopped_ = stopped_ ||
+               !report(progress_, ++attempts_ / kMostAttempts, "strength " + fmt::format("{:.4f}", strength));
     if (stopped_) return {};
     Variation variation{vary_recipe(recipe_, strength, seed_, noise), strength, noise};
     const TriangleMesh mesh = mesh_for_comparison(variation.recipe);
@@ -122,9 +117,10 @@ class Search {
                        "no other body; take another number");
     }
     const double largest = std::floor(*most_similar_ * 1e4 - 1e-6) * 1e-4;
-    throw InputError(which + "no other body with a similarity of " + printed("%.6g", least_similarity_) +
-                     " was found; ask for " + printed("%.4f", largest) + " at most, a difference of " +
-                     printed("%.4f", 1.0 - largest));
+    throw InputError(which + "no other body with a similarity of " +
+                     fmt::format("{:.6g}", least_similarity_) + " was found; ask for " +
+                     fmt::format("{:.4f}", largest) + " at most, a difference of " +
+                     fmt::format("{:.4f}", 1.0 - largest));
   }
 
   const Recipe& recipe_;

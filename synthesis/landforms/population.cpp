@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
@@ -47,12 +46,10 @@ int number_of(const Population& population, const BareSurface& surface, const Co
   if (population.count) return *population.count;
   const double mean = *population.density * surface.area();
   if (mean > 0.9 * kMaxDrawnLandforms) {  // far beyond chance
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        ".density: would draw %.3g on this body, whose area is %.4g; at most 9e5 may be drawn: lower it",
-        mean, surface.area());
-    throw InputError(where + text);
+    throw InputError(fmt::format(
+        "{}.density: would draw {:.3g} on this body, whose area is {:.4g}; at most 9e5 may be drawn: lower "
+        "it",
+        where, mean, surface.area()));
   }
   return poisson_number(mean, random);
 }

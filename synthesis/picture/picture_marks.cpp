@@ -1,9 +1,10 @@
 #include "synthesis/picture/picture_marks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -76,17 +77,11 @@ constexpr int kStripDots = 24, kBarTop = 4, kBarDots = 6, kTextTop = 13;  // dot
 
 int dot_of(int height) { return 1 + height / 600; }
 
-std::string four_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
+std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
 
 // A length of one digit, without an exponent where few zeros do.
 std::string length_digits(double length) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), length >= 1.0 && length < 1e7 ? "%.0f" : "%.4g", length);
-  return text.data();
+  return length >= 1.0 && length < 1e7 ? fmt::format("{:.0f}", length) : four_digits(length);
 }
 
 // The largest of 1, 2 and 5 times a power of ten that is not above `most`.

@@ -1,7 +1,8 @@
 #include "tasks/description/classify.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -123,12 +124,9 @@ void require_shapes_of_each(const LabelledFeatures& data) {
 }
 
 void say_evaluation(const Job& job, const Evaluation& evaluation, int folds) {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "%d shapes, %zu classes: %.1f %% right, mean average precision %.1f %% (%d folds)",
-                evaluation.shapes, evaluation.classes.size(), 100 * evaluation.accuracy,
-                100 * evaluation.mean_average_precision, folds);
-  job.say(line);
+  job.say(fmt::format("{} shapes, {} classes: {:.1f} % right, mean average precision {:.1f} % ({} folds)",
+                      evaluation.shapes, evaluation.classes.size(), 100 * evaluation.accuracy,
+                      100 * evaluation.mean_average_precision, folds));
 }
 
 void say_skipped(const Job& job, const fs::path& file) {

@@ -181,6 +181,11 @@ PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
 
 // The side of a pixel in metres that the file states.
 double stated_side(const StatedScale& scale, const std::string& name) {
+  if (scale.unknown) {
+    throw InputError(name +
+                     ": PROJ cannot tell how large its pixels are on the ground; set PROJ_DATA to the folder "
+                     "of proj.db if that is missing, or give --mm-per-px");
+  }
   if (scale.like_degrees) {
     throw InputError(fmt::format(
         "{}: its pixels of {:.4g} may be degrees, and no frame says so; give --mm-per-px, or state a frame "

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <type_traits>
@@ -22,10 +23,16 @@ constexpr bool kIsVector = false;
 template <typename T>
 constexpr bool kIsVector<std::vector<T>> = true;
 
+// The number has a point in it whatever the locale, as Python's caller may have set one.
 double number_in(const std::string& word) {
-  char* end = nullptr;
-  const double value = std::strtod(word.c_str(), &end);
-  if (word.empty() || *end != '\0') throw InputError("must be a number, is \"" + word + "\"");
+  const char *const begin = word.data() + (word.starts_with('+') && !word.starts_with("+-") ? 1 : 0),
+                    *const end = word.data() + word.size();
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(begin, end, value);
+  if (error == std::errc::invalid_argument || rest != end)
+    throw InputError("must be a number, is \"" + word + "\"");
+  if (error == std::errc::result_out_of_range)
+    throw InputError("must be a number that a double holds, is \"" + word + "\"");
   if (!std::isfinite(value)) throw InputError("must be a finite number");
   return value;
 }

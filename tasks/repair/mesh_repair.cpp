@@ -1,8 +1,9 @@
 #include "tasks/repair/mesh_repair.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string_view>
 #include <tuple>
@@ -207,11 +208,7 @@ void uncross(MeshRepair& repair, const std::string& name, const Progress& progre
   repair.moved = std::max(repair.moved, distance_moved(repair.mesh, old));
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
-  return text;
-}
+std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
 
 void require_within_limits(const MeshRepair& repair, const std::string& name, double most_filled) {
   if (repair.filled_share > most_filled) {

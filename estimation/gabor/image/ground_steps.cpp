@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -50,12 +51,21 @@ bool like_a_globe(GDALDataset& raster, const GeoTransform& t) {
 }
 
 // To six digits, which the libraries of all machines agree on.
-double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+double rounded(double value) {
+  const std::string text = fmt::format("{:.6g}", value);
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
 
-// The steps where a projection stretches the ground: its plane has other pixels than the body. None where it
-// does so by less than 2 %, or where the frame has no globe.
-std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddlePixels middle, double plain) {
+// Whether PROJ finds its database. Without it, PROJ gives frames a wrong unit and coordinates as they are.
+bool has_projection_data() { return OGRSpatialReference().importFromEPSG(4326) == OGRERR_NONE; }
+
+// The steps on the body, whose pixels are other than those of the plane where the projection stretches the
+// ground by 2 % or more. None where PROJ cannot tell them.
+std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddlePixels middle,
+                                       const GroundSteps& in_plane) {
   constexpr double kStretch = 0.02;
+  const double plain = in_plane.column.length();
   OGRSpatialReference plane(frame);
   const std::unique_ptr<OGRSpatialReference> globe(frame.CloneGeogCS());
   if (globe == nullptr) return {};
@@ -72,7 +82,8 @@ std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddleP
   GroundSteps steps{step(1), step(2), ""};
   const double width = steps.column.length(), height = steps.row.length();
   const auto differs = [&](double side) { return !(std::abs(side - plain) <= kStretch * plain); };
-  if (!(width < 4.0 * plain && height < 4.0 * plain) || (!differs(width) && !differs(height))) return {};
+  if (!(width < 4.0 * plain && height < 4.0 * plain)) return {};
+  if (!differs(width) && !differs(height)) return in_plane;
   steps.source = fmt::format("on the ground, where the projection has {:.6g} m", plain);
   return steps;
 }
@@ -101,8 +112,14 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
   }
   steps.column = {unit.east * t[1], unit.north * t[4]};
   steps.row = {unit.east * t[2], unit.north * t[5]};
-  if (frame == nullptr || frame->IsProjected() == 0) return steps;
-  return unprojected(*frame, middle, steps.column.length()).value_or(steps);
+  if (frame == nullptr) return steps;
+  if (has_projection_data()) {
+    if (frame->IsProjected() == 0) return steps;
+    if (auto on_ground = unprojected(*frame, middle, steps)) return on_ground;
+  }
+  steps.unknown = true;
+  steps.source = "of a map that PROJ cannot evaluate";
+  return steps;
 }
 
 }  // namespace astrolith

@@ -318,6 +318,7 @@ void RasterFile::find_scale() {
     scale.pixel_width = steps->column.length();
     scale.pixel_height = steps->row.length();
     scale.like_degrees = steps->like_degrees;
+    scale.unknown = steps->unknown;
     const double shear = steps->column.east * steps->row.east + steps->column.north * steps->row.north;
     scale.sheared = std::abs(shear) > 0.01 * scale.pixel_width * scale.pixel_height;
     scale.pixel_source = steps->source;

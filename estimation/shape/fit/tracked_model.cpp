@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "estimation/shape/fit/sphere_growth.h"
 #include "estimation/shape/fit/tracked_model_internal.h"
@@ -91,10 +92,7 @@ void TrackedModel::measure(int iterations) {
   const int before = summary_.convergence.empty() ? 0 : summary_.convergence.back().iterations;
   summary_.convergence.push_back(
       {before + iterations, static_cast<int>(summary_.model.spheres.size()), mean});
-  char words[64];
-  std::snprintf(words, sizeof words, "%zu spheres, mean distance %.4f %%", summary_.model.spheres.size(),
-                100.0 * mean);
-  words_ = words;
+  words_ = fmt::format("{} spheres, mean distance {:.4f} %", summary_.model.spheres.size(), 100.0 * mean);
 }
 
 }  // namespace astrolith

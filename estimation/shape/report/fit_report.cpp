@@ -1,7 +1,8 @@
 #include "estimation/shape/report/fit_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,11 +41,7 @@ std::vector<double> vertex_distances(const SurfaceTree& other, const TriangleMes
   return distances;
 }
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f %%", 100.0 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return fmt::format("{:.3f} %", 100.0 * fraction); }
 
 void write_target_and_fit(const TargetBody& target, const ShapeFitResult& fit,
                           const std::filesystem::path& file) {
@@ -126,12 +123,6 @@ std::vector<double> sampled_distances(const TargetBody& target, const TriangleMe
   return distances;
 }
 
-std::string number(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 PageTable distance_table(const SurfaceDistanceReport& d) {
   const auto row = [](const char* name, double mean, double p99, double max) {
     return std::vector<std::string>{name, percent(mean), percent(p99), percent(max)};
@@ -149,7 +140,7 @@ PageTable likeness_table(const ShapeFitResult& fit) {
   return {{"likeness", ""},
           {{"similarity of the shape histograms (ahd)", stated(&MeasuredSimilarity::value)},
            {"similarity of two samplings of the target", stated(&MeasuredSimilarity::floor)},
-           {"volume of the fit over that of the target", number(fit.check.volume_ratio, "%.5f")}}};
+           {"volume of the fit over that of the target", fmt::format("{:.5f}", fit.check.volume_ratio)}}};
 }
 
 PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
@@ -159,17 +150,17 @@ PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
            {"triangles or metaballs", std::to_string(target.mesh.triangles.size()),
             std::to_string(fit.body.num_metaballs())},
            {"subtractive metaballs", "", std::to_string(fit.body.subtract.size())},
-           {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
+           {"sharpness m a of the blend", "", fmt::format("{:.4g}", fit.body.blend_exponent * fit.body.a)}}};
 }
 
 std::string statistic_words(const StatisticComparison& c, double edge, const LengthWords& lengths) {
   if (c.correlation) {
-    return "correlation of roughness, " + number(c.radius * edge * lengths.scale, "%.3g") + " to " +
-           number(c.reach * edge * lengths.scale, "%.3g") + " " + lengths.unit + " apart";
+    return "correlation of roughness, " + fmt::format("{:.3g}", c.radius * edge * lengths.scale) + " to " +
+           fmt::format("{:.3g}", c.reach * edge * lengths.scale) + " " + lengths.unit + " apart";
   }
   const std::string name = name_of(c.quantity);
   return c.radius > 0.0
-             ? name + " within " + number(c.radius * edge * lengths.scale, "%.3g") + " " + lengths.unit
+             ? name + " within " + fmt::format("{:.3g}", c.radius * edge * lengths.scale) + " " + lengths.unit
              : name;
 }
 
@@ -177,8 +168,9 @@ PageTable realism_table(const ReportedRealism& realism) {
   PageTable table{{"surface", "target", "fit", "distance", "p"}, {}};
   for (const StatisticComparison& c : realism.verdict.statistics) {
     table.rows.push_back({statistic_words(c, realism.verdict.edge, realism.lengths),
-                          number(c.middle_a, "%.3f"), number(c.middle_b, "%.3f"), number(c.distance, "%.3f"),
-                          number(c.p, "%.3f") + (c.counts_in_p ? "" : " (not counted)")});
+                          fmt::format("{:.3f}", c.middle_a), fmt::format("{:.3f}", c.middle_b),
+                          fmt::format("{:.3f}", c.distance),
+                          fmt::format("{:.3f}", c.p) + (c.counts_in_p ? "" : " (not counted)")});
   }
   return table;
 }
@@ -188,9 +180,9 @@ PageTable verdict_table(const ReportedRealism& realism) {
   for (const std::string& words : realism_words(realism.verdict, realism.lengths)) {
     table.rows.push_back({words, ""});
   }
-  table.rows.push_back({"p of the whole, at least 0.05 to pass", number(realism.verdict.p, "%.3f")});
+  table.rows.push_back({"p of the whole, at least 0.05 to pass", fmt::format("{:.3f}", realism.verdict.p)});
   table.rows.push_back(
-      {"largest distance, at most 0.13 to pass", number(realism.verdict.largest_distance, "%.3f")});
+      {"largest distance, at most 0.13 to pass", fmt::format("{:.3f}", realism.verdict.largest_distance)});
   return table;
 }
 

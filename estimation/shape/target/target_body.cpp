@@ -1,8 +1,9 @@
 #include "estimation/shape/target/target_body.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "estimation/shape/target/outer_surface.h"
@@ -159,10 +160,9 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Prog
   const Box box = mesh.bounds();
   const double diagonal = box.diagonal();
   if (!(diagonal > 1e-9 && diagonal < 1e9)) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", diagonal);
-    throw InputError(name + ": bounding-box diagonal " + text +
-                     " is out of range; scale the mesh to metres or kilometres");
+    throw InputError(fmt::format(
+        "{}: bounding-box diagonal {:.3g} is out of range; scale the mesh to metres or kilometres", name,
+        diagonal));
   }
   require_closed_body(mesh, name, remarks);
   move_to_body_frame(mesh, box.center(), diagonal);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "numerics/errors.h"
+#include "tests/support/comma_locale.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -49,6 +50,22 @@ TEST(OptionTable, ValuesAreReadAsTheirTypesSay) {
                                     {"quick", "true"},
                                     {"size", "1e3"},
                                     {"view", "1 2 3 4 5 6"}}));
+}
+
+TEST(OptionTable, NumbersHaveAPointInEveryLocale) {
+  const testing::CommaLocale comma;
+  if (!comma.is_set()) GTEST_SKIP() << "no locale with a comma can be made";
+  OptionTable options;
+  double size = 0.0;
+  options.add_option("--size", size, "how large").check(in_range(0.1, 2.0));
+  OptionTable::set(*options.find("size"), {"0.5"});
+  EXPECT_EQ(size, 0.5);
+  OptionTable::set(*options.find("size"), {"+1.5e0"});
+  EXPECT_EQ(size, 1.5);
+  for (const char* word : {"0,5", "", "+", "0.5x", " 0.5", "+-1", "nan"})
+    EXPECT_NE(refusal_of([&] { OptionTable::set(*options.find("size"), {word}); }), "no error") << word;
+  EXPECT_NE(refusal_of([&] { OptionTable::set(*options.find("size"), {"1e999"}); }).find("double"),
+            std::string::npos);
 }
 
 TEST(OptionTable, WrongValuesAreRefusedAndChangeNothing) {

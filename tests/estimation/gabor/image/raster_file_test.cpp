@@ -8,6 +8,7 @@
 #include "numerics/errors.h"
 #include "synthesis/picture/image_file.h"
 #include "tests/estimation/gabor/image/raster_inputs.h"
+#include "tests/support/comma_locale.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -171,6 +172,52 @@ TEST_F(RasterFileTest, AProjectionMayStretchTheGround) {
   EXPECT_NEAR(map.scale->pixel_width, 5.0, 1e-4);
   EXPECT_NEAR(map.scale->pixel_height, 5.0, 1e-3);
   EXPECT_EQ(map.scale->pixel_source, "on the ground, where the projection has 10 m");
+}
+
+// Six digits of a size are read back by the C library in Python's caller's locale, or not by it.
+TEST_F(RasterFileTest, PixelsAreTheSameInEveryLocale) {
+  const testing::CommaLocale comma;
+  if (!comma.is_set()) GTEST_SKIP() << "no locale with a comma can be made";
+  const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+    std::array<double, 6> transform{2e6, 3.0, 0.0, 8399738.0, 0.0, -3.0};
+    raster.SetGeoTransform(transform.data());
+    OGRSpatialReference reference;
+    reference.SetFromUserInput("EPSG:3857");
+    raster.SetSpatialRef(&reference);
+  });
+  EXPECT_NEAR(map.scale->pixel_width, 1.5, 1e-5);
+}
+
+// PROJ without its database knows neither Web Mercator nor the feet of California.
+TEST_F(RasterFileTest, PixelsAreUnknownWithoutTheDataOfProj) {
+  const auto map = [](const char* frame, double north) {
+    return [=](GDALDataset& raster) {
+      std::array<double, 6> transform{2e6, 3.0, 0.0, north, 0.0, -3.0};
+      raster.SetGeoTransform(transform.data());
+      OGRSpatialReference reference;
+      reference.SetFromUserInput(frame);
+      raster.SetSpatialRef(&reference);
+    };
+  };
+  const RasterInput input{"GTiff", GDT_Float32};
+  const auto mercator = write_raster(folder / "mercator.tif", input, kSteps, map("EPSG:3857", 8399738.0));
+  const auto feet = write_raster(folder / "feet.tif", input, kSteps, map("EPSG:2225", 2e6));
+  const auto moon =
+      write_raster(folder / "moon.tif", input, kSteps, map("+proj=merc +R=1737400 +units=m", 2e6));
+  EXPECT_NEAR(read_image(mercator, false).scale->pixel_width, 1.5, 1e-5);
+  EXPECT_NEAR(read_image(feet, false).scale->pixel_width, 3.0 * 1200.0 / 3937.0, 1e-9);
+  char** const paths = OSRGetPROJSearchPaths();
+  const char* const nowhere[] = {folder.path().c_str(), nullptr};
+  OSRSetPROJSearchPaths(nowhere);
+  OSRCleanup();
+  for (const auto& file : {mercator, feet, moon}) {
+    EXPECT_TRUE(read_image(file, false).scale->unknown) << file;
+    EXPECT_EQ(read_image(file, false).scale->pixel_source, "of a map that PROJ cannot evaluate");
+  }
+  OSRSetPROJSearchPaths(paths);
+  OSRCleanup();
+  CSLDestroy(paths);
+  EXPECT_FALSE(read_image(feet, false).scale->unknown);
 }
 
 TEST_F(RasterFileTest, AFootIsNoMetre) {
