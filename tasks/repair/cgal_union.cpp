@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -59,19 +61,49 @@ TriangleMesh rounded_mesh(const ExactMesh& exact) {
 struct Solid {
   ExactMesh mesh;  // wound outwards
   bool hollow = false;
-  double volume = 0.0;  // > 0
+  std::optional<std::size_t> owner;  // the solid that has this hollow
 };
+
+// The solid that a hollow lies in: the smallest that holds it. `parts` has the largest first. None where the
+// hollow reaches out of all of them.
+std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<MeshPart>& parts,
+                                    PartNesting& nesting) {
+  for (std::size_t i = hollow; i-- > 0;) {
+    if (parts[i].volume > 0.0 && nesting.lies_inside(parts[hollow], parts[i])) return i;
+  }
+  return {};
+}
 
 // All solids, the largest first. A cavity, whose volume is negative, is a hollow.
 std::vector<Solid> solids_of(const TriangleMesh& mesh) {
+  std::vector<MeshPart> parts = parts_of(mesh, triangle_components(mesh));
+  std::stable_sort(parts.begin(), parts.end(), [](const MeshPart& a, const MeshPart& b) {
+    return std::abs(a.volume) > std::abs(b.volume);
+  });
+  PartNesting nesting;
   std::vector<Solid> solids;
-  for (const MeshPart& part : parts_of(mesh, triangle_components(mesh))) {
-    solids.push_back({exact_mesh(part.mesh), part.volume < 0.0, std::abs(part.volume)});
-    if (solids.back().hollow) PMP::reverse_face_orientations(solids.back().mesh);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    solids.push_back({exact_mesh(parts[i].mesh), parts[i].volume < 0.0, {}});
+    if (!solids.back().hollow) continue;
+    PMP::reverse_face_orientations(solids.back().mesh);
+    solids.back().owner = owner_of(i, parts, nesting);
   }
-  std::stable_sort(solids.begin(), solids.end(),
-                   [](const Solid& a, const Solid& b) { return a.volume > b.volume; });
   return solids;
+}
+
+// Adds a solid to a mesh, or takes a hollow away. Throws InputError for surfaces that touch or cross wrongly.
+void combine(ExactMesh& mesh, Solid& solid, const std::string& failed) {
+  const auto crossing = CGAL::parameters::throw_on_self_intersection(true);
+  ExactMesh both;
+  bool done = false;
+  try {
+    done = solid.hollow ? PMP::corefine_and_compute_difference(mesh, solid.mesh, both, crossing)
+                        : PMP::corefine_and_compute_union(mesh, solid.mesh, both, crossing);
+  } catch (const PMP::Corefinement::Self_intersection_exception&) {
+    throw InputError(failed + ": one passes through itself");
+  }
+  if (!done) throw InputError(failed + ": some touch along edges or at vertices alone");
+  mesh = std::move(both);
 }
 
 }  // namespace
@@ -80,23 +112,16 @@ TriangleMesh united(const TriangleMesh& mesh, const std::string& name, const Pro
   const std::string failed = "its parts cannot be united";
   return guarded(name, failed, [&] {
     std::vector<Solid> solids = solids_of(mesh);
+    // A cavity is cut out of its own solid. Another solid may fill it.
+    for (Solid& solid : solids) {
+      if (solid.owner) combine(solids[*solid.owner].mesh, solid, name + ": " + failed);
+    }
     ExactMesh all = std::move(solids.front().mesh);
-    const auto crossing = CGAL::parameters::throw_on_self_intersection(true);
-    // A smaller solid may fill what a larger hollow left, never the other way.
     for (std::size_t i = 1; i < solids.size(); ++i) {
       if (!report(progress, static_cast<double>(i) / static_cast<double>(solids.size()), "union")) {
         throw WorkError("stopped while parts of the mesh were united");
       }
-      ExactMesh both;
-      bool done = false;
-      try {
-        done = solids[i].hollow ? PMP::corefine_and_compute_difference(all, solids[i].mesh, both, crossing)
-                                : PMP::corefine_and_compute_union(all, solids[i].mesh, both, crossing);
-      } catch (const PMP::Corefinement::Self_intersection_exception&) {
-        throw InputError(name + ": " + failed + ": one passes through itself");
-      }
-      if (!done) throw InputError(name + ": " + failed + ": some touch along edges or at vertices alone");
-      all = std::move(both);
+      if (!solids[i].owner) combine(all, solids[i], name + ": " + failed);
     }
     return rounded_mesh(all);
   });

@@ -174,6 +174,22 @@ TEST(MeshRepair, UnitesBarsThatCross) {
   EXPECT_NEAR(surface_area(repair.mesh), 30.0, 1e-14);
 }
 
+// A cube reaches into the cavity of another one, and fills a part of it.
+TEST(MeshRepair, UnitingKeepsASolidThatReachesIntoACavity) {
+  const auto cube = [](double side, double x) {
+    TriangleMesh mesh = testing::cube(side, {-0.5 * side, -0.5 * side, -0.5 * side});
+    for (Vec3d& p : mesh.vertices) p.x += x;
+    return mesh;
+  };
+  const TriangleMesh hollow = testing::joined(cube(10.0, 0.0), testing::reversed(cube(3.0, 0.0)));
+  RepairOptions unite;
+  unite.unite = true;
+  const MeshRepair repair = repaired(testing::joined(hollow, cube(5.0, 3.0)), unite);
+  EXPECT_TRUE(repair.united);
+  // The cavity of 27 is filled from x = 0.5 to 1.5; the cube of 125 reaches half a unit out of the large one.
+  EXPECT_NEAR(volume(repair.mesh), 1000.0 - 27.0 + 9.0 + 12.5, 1e-9);
+}
+
 TEST(MeshRepair, ARockInACavityCountsOnce) {
   const TriangleMesh geode =
       testing::joined(testing::joined(testing::icosphere(3), testing::reversed(testing::icosphere(3, 0.6))),
