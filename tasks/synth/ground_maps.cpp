@@ -66,25 +66,75 @@ class VerticalLattice {
   std::vector<Vec3d> effective_;
 };
 
-// Raises the third band to the boulder's diameter where a footprint reaches it, seen from above.
-void mark_boulder(const PlacedBoulder& boulder, const HeightMap& map, const Vec3d& center, double metres,
-                  double footprint, std::vector<float>& bands) {
-  const double diameter = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
-  const double radius = 0.5 * diameter / map.pixel, half = 0.5 * footprint / map.pixel;
-  const Vec3d d = boulder.center - center - map.origin;
-  const double x = dot(d, map.right) / map.pixel + 0.5 * map.side - 0.5,
-               y = 0.5 * map.side - 0.5 - dot(d, map.ahead) / map.pixel;
-  const double reach = radius + half, last = map.side - 1.0;
-  for (int j = static_cast<int>(std::ceil(std::max(y - reach, 0.0))); j <= std::min(y + reach, last); ++j) {
-    for (int i = static_cast<int>(std::ceil(std::max(x - reach, 0.0))); i <= std::min(x + reach, last); ++i) {
-      const double across = std::max(std::fabs(i - x) - half, 0.0),
-                   along = std::max(std::fabs(j - y) - half, 0.0);
-      if (across * across + along * along > radius * radius) continue;
-      float& band =
-          bands[kBands * (static_cast<std::size_t>(j) * map.side + static_cast<std::size_t>(i)) + 2];
-      if (band < metres * diameter) band = static_cast<float>(metres * diameter);  // unless it is NaN
+double diameter_of(const PlacedBoulder& boulder) {
+  return std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
+}
+
+// Marks the third band where footprints reach boulders, seen from above. The largest boulder comes first, so
+// that a pixel is marked once, and passed over from then on.
+class BoulderMarks {
+ public:
+  BoulderMarks(const HeightMap& map, const Vec3d& center, double metres, double footprint,
+               std::vector<float>& bands)
+      : map_(map),
+        center_(center),
+        metres_(metres),
+        half_(0.5 * footprint / map.pixel),
+        bands_(bands),
+        next_(static_cast<std::size_t>(map.side) * (static_cast<std::size_t>(map.side) + 1)) {
+    for (std::size_t at = 0; at < next_.size(); ++at)
+      next_[at] = static_cast<int>(at % (static_cast<std::size_t>(map.side) + 1));
+  }
+
+  void mark(const PlacedBoulder& boulder) {
+    const double diameter = diameter_of(boulder), radius = 0.5 * diameter / map_.pixel;
+    const Vec3d d = boulder.center - center_ - map_.origin;
+    const double x = dot(d, map_.right) / map_.pixel + 0.5 * map_.side - 0.5,
+                 y = 0.5 * map_.side - 0.5 - dot(d, map_.ahead) / map_.pixel;
+    const double reach = radius + half_, last = map_.side - 1.0;
+    for (int j = static_cast<int>(std::ceil(std::max(y - reach, 0.0))); j <= std::min(y + reach, last); ++j) {
+      const double along = std::max(std::fabs(j - y) - half_, 0.0);
+      const double width = half_ + std::sqrt(std::max(radius * radius - along * along, 0.0));
+      const double first = std::ceil(std::clamp(x - width, 0.0, last + 1.0));
+      for (int i = unmarked(j, static_cast<int>(first)); i <= std::min(x + width, last);
+           i = unmarked(j, i + 1)) {
+        float& band = bands_[kBands * (static_cast<std::size_t>(j) * static_cast<std::size_t>(map_.side) +
+                                       static_cast<std::size_t>(i)) +
+                             2];
+        if (!std::isnan(band)) band = static_cast<float>(metres_ * diameter);
+        next(j, i) = i + 1;
+      }
     }
   }
+
+ private:
+  int& next(int row, int column) {
+    return next_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(map_.side) + 1) +
+                 static_cast<std::size_t>(column)];
+  }
+  // The first pixel of the row, from this one on, that is not marked; the side of the map where all are.
+  int unmarked(int row, int column) {
+    while (next(row, column) != column) column = next(row, column) = next(row, next(row, column));
+    return column;
+  }
+
+  const HeightMap& map_;
+  Vec3d center_;
+  double metres_, half_;  // half a footprint, pixels
+  std::vector<float>& bands_;
+  std::vector<int> next_;  // of each pixel, itself or one on the way to the next unmarked one
+};
+
+// Marks all boulders that the map resolves.
+void mark_boulders(const std::vector<Feature>& landforms, double pixel, BoulderMarks marks) {
+  std::vector<const PlacedBoulder*> boulders;
+  for (const Feature& landform : landforms) {
+    if (landform.boulder != nullptr && is_resolved(landform, pixel)) boulders.push_back(landform.boulder);
+  }
+  std::stable_sort(boulders.begin(), boulders.end(), [](const PlacedBoulder* a, const PlacedBoulder* b) {
+    return diameter_of(*a) > diameter_of(*b);
+  });
+  for (const PlacedBoulder* boulder : boulders) marks.mark(*boulder);
 }
 
 Json largest_values(const std::vector<float>& bands) {
@@ -157,10 +207,8 @@ void write_hazard_map(Job& job, const MeshSinks& sinks, const HeightMap& map, co
     bands[kBands * at + 1] = plane.rms;
     bands[kBands * at + 2] = known ? 0.0f : plane.rms;
   }
-  for (const Feature& landform : features_of(part.field, part.region.cube())) {
-    if (landform.boulder != nullptr && is_resolved(landform, map.pixel))
-      mark_boulder(*landform.boulder, map, part.region.center, metres, map.pixel * (2 * half + 1), bands);
-  }
+  const std::vector<Feature> landforms = features_of(part.field, part.region.cube());
+  mark_boulders(landforms, map.pixel, {map, part.region.center, metres, map.pixel * (2 * half + 1), bands});
   Json frame = frame_json(map, part);
   frame["footprint_m"] = metres * map.pixel * (2 * half + 1);
   frame["largest"] = largest_values(bands);

@@ -240,6 +240,50 @@ TEST(FootprintPlanes, HaveTheSlopeOfAPlaneAndSeeAPixelThatStandsOut) {
   EXPECT_TRUE(std::isnan(footprint_planes(map, 5)[4 * 9 + 4].rms));
 }
 
+// The squares of many bands, against sums over each square by itself; some pixels have no height.
+TEST(FootprintPlanes, AreThoseOfEachSquareByItself) {
+  constexpr int kSide = 150, kHalf = 7;
+  HeightMap map{kSide, 0.5, {}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}};
+  for (int at = 0; at < kSide * kSide; ++at) {
+    const double i = at % kSide, j = at / kSide;
+    map.heights.push_back(
+        static_cast<float>(1000.0 + 3.0 * std::sin(0.1 * i) * std::cos(0.07 * j) + 0.02 * i));
+  }
+  map.heights[60 * kSide + 70] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<FootprintPlane> planes = footprint_planes(map, kHalf);
+  int known = 0;
+  for (int j = kHalf; j < kSide - kHalf; ++j) {
+    for (int i = kHalf; i < kSide - kHalf; ++i) {
+      double mean = 0.0, right = 0.0, ahead = 0.0, squares = 0.0, spread = 0.0;
+      const auto each = [&](const auto& take) {
+        for (int y = -kHalf; y <= kHalf; ++y) {
+          for (int x = -kHalf; x <= kHalf; ++x)
+            take(double{map.heights[static_cast<std::size_t>((j + y) * kSide + i + x)]}, x, y);
+        }
+      };
+      const double count = (2 * kHalf + 1) * (2 * kHalf + 1);
+      each([&](double z, int, int) { mean += z / count; });
+      each(
+          [&](double z, int x, int y) { right += (z - mean) * x, ahead -= (z - mean) * y, spread += x * x; });
+      right /= spread, ahead /= spread;
+      each([&](double z, int x, int y) {
+        const double off = z - mean - right * x + ahead * y;
+        squares += off * off / count;
+      });
+      const FootprintPlane& plane = planes[static_cast<std::size_t>(j * kSide + i)];
+      if (std::isnan(mean)) {
+        ASSERT_TRUE(std::isnan(plane.rms));
+        continue;
+      }
+      ++known;
+      ASSERT_NEAR(plane.along_right, right / map.pixel, 1e-7);
+      ASSERT_NEAR(plane.along_ahead, ahead / map.pixel, 1e-7);
+      ASSERT_NEAR(plane.rms, std::sqrt(squares), 1e-7);
+    }
+  }
+  EXPECT_EQ(known, (kSide - 2 * kHalf) * (kSide - 2 * kHalf) - 15 * 15);
+}
+
 TEST(HeightMap, ABodyFacesNoDirection) {
   EXPECT_FALSE(mean_plane(testing::octahedron()));
   EXPECT_FALSE(mean_plane({}));
