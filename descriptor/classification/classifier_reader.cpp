@@ -5,12 +5,14 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "descriptor/classification/classifier_format_internal.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
+#include "numerics/json_whole.h"
 
 namespace astrolith {
 namespace {
@@ -41,13 +43,11 @@ class Place {
     if (!json_.is_string()) fail("is no text");
     return json_.get<std::string>();
   }
-  // A whole number between low and high, both of which a double holds exactly.
+  // A whole number between low and high.
   std::int64_t integer(std::int64_t low, std::int64_t high) const {
-    const double value = json_.is_number_integer() ? json_.get<double>() : std::nan("");
-    if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high))) {
-      fail("is no whole number between " + std::to_string(low) + " and " + std::to_string(high));
-    }
-    return static_cast<std::int64_t>(value);
+    const std::optional<std::int64_t> number = whole_number(json_, low, high);
+    if (!number) fail("is no whole number between " + std::to_string(low) + " and " + std::to_string(high));
+    return *number;
   }
   float number() const {
     const double value = json_.is_number() ? json_.get<double>() : std::nan("");

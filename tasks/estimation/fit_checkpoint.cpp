@@ -4,10 +4,12 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/json_whole.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -53,11 +55,12 @@ ShapeFitResult base_of(const ordered_json& json, const std::string& name) {
   base.body = *recipe.body;
   base.filling_rate = json.at("filling_rate").get<double>();
   base.base_similarity = json.at("similarity").get<double>();
-  base.base_spheres = json.at("spheres").get<int>();
-  base.evaluations = json.at("evaluations").get<std::int64_t>();
+  base.base_spheres = whole_number<int>(json.at("spheres"), 0).value();
+  base.evaluations = whole_number<std::int64_t>(json.at("evaluations"), 0).value();
   base.search_history = json.at("history").get<std::vector<double>>();
   for (const auto& p : json.at("convergence")) {
-    base.convergence.push_back({p.at(0).get<int>(), p.at(1).get<int>(), p.at(2).get<double>()});
+    base.convergence.push_back({whole_number<int>(p.at(0), 0).value(), whole_number<int>(p.at(1), 0).value(),
+                                p.at(2).get<double>()});
   }
   if (base.convergence.empty()) throw InputError(name + ": base.convergence: is empty");
   return base;
@@ -75,8 +78,8 @@ ordered_json log_json(const EvaluationLog& log) {
 std::map<std::uint64_t, double> log_of(const ordered_json& json) {
   std::map<std::uint64_t, double> entries;
   for (const auto& entry : json) {
-    entries.emplace(entry.at(0).get<std::uint64_t>(),
-                    std::bit_cast<double>(entry.at(1).get<std::uint64_t>()));
+    entries.emplace(whole_number<std::uint64_t>(entry.at(0)).value(),
+                    std::bit_cast<double>(whole_number<std::uint64_t>(entry.at(1)).value()));
   }
   return entries;
 }
@@ -111,9 +114,11 @@ FitCheckpoint::FitCheckpoint(std::filesystem::path file, CheckpointKey key)
 
 void FitCheckpoint::read() {
   const std::string name = file_.string();
+  const std::string damaged =
+      name + ": is no checkpoint, or damaged; delete it, or give --checkpoint another file";
   try {
     const ordered_json json = ordered_json::parse(read_text(file_));
-    const int format = json.at("astrolith_checkpoint").get<int>();
+    const std::optional<int> format = whole_number<int>(json.at("astrolith_checkpoint"));
     require_same_code(json.at("of"), key_, name);
     if (format != kFormat || json.at("of") != key_json(key_)) {
       throw InputError(
@@ -129,7 +134,9 @@ void FitCheckpoint::read() {
     saved_evaluations_ = log_.size();
     resumed_ = true;
   } catch (const nlohmann::json::exception&) {
-    throw InputError(name + ": is no checkpoint, or damaged; delete it, or give --checkpoint another file");
+    throw InputError(damaged);
+  } catch (const std::bad_optional_access&) {  // a number is no whole one
+    throw InputError(damaged);
   }
 }
 

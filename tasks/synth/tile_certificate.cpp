@@ -5,10 +5,12 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/json_whole.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -43,12 +45,10 @@ class CertificateFields {
     throw InputError(file_.string() + ": " + what + "; give the --summary of synth --tile");
   }
   std::int64_t count(const char* name, std::int64_t least, std::int64_t most) const {
-    const Json& value = at(name);
-    if (!value.is_number_integer() || (value.is_number_unsigned() && value.get<std::uint64_t>() > kMostWhole))
-      fail(path_ + name + ": is no whole number");
-    const auto number = value.get<std::int64_t>();
-    if (number < least || number > most) fail(path_ + name + ": is out of range");
-    return number;
+    const std::optional<std::int64_t> number = whole_number<std::int64_t>(at(name));
+    if (!number) fail(path_ + name + ": is no whole number");
+    if (*number < least || *number > most) fail(path_ + name + ": is out of range");
+    return *number;
   }
   double number(const char* name) const {
     const Json& value = at(name);
@@ -75,8 +75,6 @@ class CertificateFields {
   bool has(const char* name) const { return object_.contains(name); }
 
  private:
-  static constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 62;
-
   const Json& at(const char* name) const {
     if (!object_.contains(name)) fail(path_ + name + ": is missing");
     return object_.at(name);

@@ -179,6 +179,17 @@ TEST_F(FitShape, CheckpointsOfSomethingElseAndDamagedOnesAreRefused) {
         std::string("{\"astrolith_checkpoint\": 1}"), std::string(100000, '[')}) {
     refuse_checkpoint(content, "stop.checkpoint");
   }
+  // No whole numbers of 64 bits, in the checkpoint of this fit.
+  for (const double number : {4.6e21, -1.0, 0.5}) {
+    auto checkpoint = nlohmann::ordered_json::parse(good);
+    checkpoint["evaluations"] = {{1, number}};
+    write("stop.checkpoint", checkpoint.dump());
+    refuse(
+        "egg.obj -o no.json --spheres 12 --population 2 --generations 2 --points 400 --base-only "
+        "--checkpoint "
+        "stop.checkpoint",
+        "stop.checkpoint: is no checkpoint, or damaged");
+  }
   // What other code wrote.
   const auto written = nlohmann::ordered_json::parse(good);
   const std::string own = written["of"]["tool"], old = "fit_shape 0.2.0 (0000000)";
