@@ -49,14 +49,15 @@ void sort_few(Iterator first, Iterator last, Less& less) {
 }  // namespace split_at_rank_detail
 
 // Puts the element at `nth` that a sort would put there, smaller or equal ones before it and larger or equal
-// ones behind it: quickselect by the median of three, as libstdc++ has it, whose order it leaves.
+// ones behind it: quickselect by the median of three, as libstdc++ has it, whose order it leaves. Elements on
+// which quickselect would take long are sorted, and equal ones keep their order.
 template <class Iterator, class Less>
 void split_at_rank(Iterator first, Iterator nth, Iterator last, Less less) {
   using namespace split_at_rank_detail;
   if (first == last || nth == last) return;
   int steps = 2 * static_cast<int>(std::bit_width(static_cast<std::uint64_t>(last - first)) - 1);
   while (last - first > 3) {
-    if (steps-- == 0) return std::partial_sort(first, std::next(nth), last, less);
+    if (steps-- == 0) return std::stable_sort(first, last, less);
     take_median(first, std::next(first), first + (last - first) / 2, std::prev(last), less);
     const Iterator cut = partition_by_first(first, last, less);
     (cut <= nth ? first : last) = cut;

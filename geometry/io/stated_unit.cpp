@@ -75,6 +75,7 @@ std::string unit_in_words(std::string_view comment) {
     if (behind.find_first_of("/^*") == 0) continue;
     if (word == "in" && behind.size() > 1 && behind[0] == ' ' && is_letter(behind[1])) continue;
     if (std::string unit = short_unit(word); is_of_lengths(unit)) return unit;
+    if (word == "si") return "m";
     if (!mark.starts_with("unit") || mark == "units of ") continue;
     if (std::string unit = unknown_unit(std::string_view(lower).substr(0, at), first_letters(rest));
         !unit.empty())

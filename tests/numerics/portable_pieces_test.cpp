@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -70,6 +71,31 @@ TEST(SplitAtRank, PutsTheRightElementAndSplits) {
       EXPECT_TRUE(i < nth ? n <= pivot : n >= pivot);
     }
   }
+}
+
+// Numbers that an adversary chooses while they are compared, so that quickselect makes no headway (McIlroy,
+// "A killer adversary for quicksort", 1999). What is left of them is sorted, whose order libraries agree on.
+TEST(SplitAtRank, SortsWhatTakesLongInTheOrderOfEveryLibrary) {
+  constexpr int kCount = 2000, kGas = kCount;
+  std::vector<int> values(kCount, kGas), places(kCount);
+  std::iota(places.begin(), places.end(), 0);
+  int solid = 0, candidate = 0;
+  const auto adversary = [&](int a, int b) {
+    int &x = values[static_cast<std::size_t>(a)], &y = values[static_cast<std::size_t>(b)];
+    if (x == kGas && y == kGas) (a == candidate ? x : y) = solid++;
+    if (x == kGas) candidate = a;
+    if (y == kGas) candidate = b;
+    return x < y;
+  };
+  split_at_rank(places.begin(), places.begin() + kCount / 2, places.end(), adversary);
+  // Four neighbours are equal now.
+  std::iota(places.begin(), places.end(), 0);
+  const auto key = [&](int place) { return values[static_cast<std::size_t>(place)] / 4; };
+  split_at_rank(places.begin(), places.begin() + kCount / 2, places.end(),
+                [&](int a, int b) { return key(a) < key(b); });
+  std::uint64_t order = 0;
+  for (const int place : places) order = order * 6364136223846793005u + static_cast<std::uint64_t>(place) + 1;
+  EXPECT_EQ(order, 16105118811123389360u);
 }
 
 #ifdef __GLIBCXX__

@@ -180,6 +180,7 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
                                    {"# file units = inches\n", "in"},
                                    {"# Units: microns\n", "um"},
                                    {"# Units: parsecs\n", "parsecs"},
+                                   {"# Units: SI\n", "m"},
                                    {"\xef\xbb\xbf# Units: meters\r", "m"},
                                    {"# columns: x, y, z (m)\n", "m"},
                                    {"# x, y, z (m)\n", "m"}})
