@@ -147,6 +147,11 @@ def test_a_model_has_mass_and_inertia_of_gravity(tmp_path):
         assert f"{figures.mass_kg:.9g}" in text and len(meshes) == 2
     seen = astrolith.read_mesh(tmp_path / "rock_visual.obj")
     assert seen.length_unit == "m" and np.ptp(seen.vertices[:, 0]) == pytest.approx(1000 * np.ptp(body.vertices[:, 0]))
+    with open(tmp_path / "rock.xml", encoding="utf-8") as before:
+        bridges.write_model(tmp_path / "rock.xml", body, 3000.0, parts=[hull])
+        assert before.read() == text  # the old file is whole for those who have opened it
+    bridges.write_model(tmp_path / "rock.xml", body, 2000.0, parts=[hull])
+    assert not list(tmp_path.glob("*.part"))
     with pytest.raises(ValueError, match="is no .sdf"):
         bridges.write_model(tmp_path / "rock.dae", body, 2000.0)
     mujoco = pytest.importorskip("mujoco")

@@ -15,6 +15,7 @@ from astrolith._gravity import gravity
 from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of, write_mesh
 from astrolith._units import METRES
 from astrolith.bridges._optional import required
+from astrolith.bridges._whole_file import write_text
 
 _MOST_HULL = 10_000
 
@@ -256,6 +257,5 @@ def write_model(
     files = [os.path.basename(path) for path in written[1:]]
     model = _Model(os.path.basename(stem), body, files[0], files[1:])
     text = {".sdf": model.sdf, ".urdf": model.urdf, ".xml": model.mjcf}[extension]()
-    with open(name, "w", encoding="utf-8") as stream:
-        stream.write(text)
+    write_text(name, text)
     return written

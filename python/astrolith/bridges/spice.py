@@ -14,6 +14,7 @@ from astrolith._arrays import PathLike
 from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
 from astrolith._units import METRES
 from astrolith.bridges._optional import required
+from astrolith.bridges._whole_file import write_text
 
 # The limits of type 2 (DSK Required Reading).
 _MOST_VERTICES = 16_000_002
@@ -179,10 +180,8 @@ def write_dsk(
 
 
 def _write_text(file: str, kind: str, lines: Sequence[str]) -> None:
-    partial = f"{file}.part"
-    with open(partial, "w", encoding="ascii", newline="\n") as out:
-        out.write(f"KPL/{kind}\n\n\\begindata\n\n" + "\n".join("   " + line for line in lines) + "\n\n\\begintext\n")
-    os.replace(partial, file)
+    text = f"KPL/{kind}\n\n\\begindata\n\n" + "\n".join("   " + line for line in lines) + "\n\n\\begintext\n"
+    write_text(file, text, encoding="ascii")
 
 
 def write_kernels(
