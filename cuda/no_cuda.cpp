@@ -14,7 +14,7 @@ namespace {
 }  // namespace
 
 const DeviceStatus& probe_device() {
-  static const DeviceStatus status{.reason = "this program was built without CUDA"};
+  static const DeviceStatus status{false, "this program was built without CUDA", "", 0, 0};
   return status;
 }
 

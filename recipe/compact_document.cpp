@@ -152,6 +152,12 @@ class TableReturner {
   std::size_t values_left_ = kMaxJsonValues;
 };
 
+// The model after the primer, which it reads once: that takes longer than a short recipe.
+TextModel primed_model() {
+  static const TextModel primed(kCompactPrimer);
+  return primed;
+}
+
 std::string encoded(const json& document, const std::vector<NumberTable>& tables,
                     const std::vector<std::string>& heights) {
   const std::string text = document.dump();
@@ -160,7 +166,7 @@ std::string encoded(const json& document, const std::vector<NumberTable>& tables
   }
   RangeEncoder encoder;
   encoder.encode_number(text.size());
-  TextModel(kCompactPrimer).encode(text, encoder);
+  primed_model().encode(text, encoder);
   TableEncoder table_encoder(encoder);
   for (const NumberTable& table : tables) table_encoder.encode(table);
   for (const std::string& bytes : heights) {
@@ -177,7 +183,7 @@ json decoded(std::string_view bytes, const std::string& name) {
   RangeDecoder decoder(bytes);
   const std::uint64_t size = decoder.decode_number();
   if (size > kMaxCompactText) throw DamagedStream();
-  json document = parse_json(TextModel(kCompactPrimer).decode(static_cast<std::size_t>(size), decoder), name);
+  json document = parse_json(primed_model().decode(static_cast<std::size_t>(size), decoder), name);
   TableReturner(decoder).fill(document);
   return_heights(document, decoder);
   return document;
