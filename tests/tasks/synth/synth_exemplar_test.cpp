@@ -90,7 +90,13 @@ TEST_F(SynthExemplar, RefusesImagesThatAreNotWhatTheRecipeSays) {
 
 TEST_F(SynthExemplar, DrawsATexture) {
   write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
-  succeed(recipe_of("i.png", false) + " --texture 200x100 --tileable -o t.png");
+  const std::string line = recipe_of("i.png", false) + " --texture 200x100 --tileable --threads ";
+  succeed(line + "1 -o one.png");
+  succeed(line + "2 -o two.png");
+  EXPECT_EQ(text("one.png").substr(16, 8), std::string("\0\0\0\xC8\0\0\0\x64", 8));  // width and height
+  EXPECT_TRUE(text("one.png") == text("two.png"));
+  succeed(line + "2 --seed 9 -o other.png");
+  EXPECT_FALSE(text("one.png") == text("other.png"));
 }
 
 // The written recipe names the image from its own folder.

@@ -315,15 +315,13 @@ TEST_F(SynthMembers, BodiesOfOneRecipeDifferByTheirSeeds) {
 }
 
 TEST_F(SynthMembers, VariationsAreMadeByTheirNumbers) {
-  write("r.json", replaced(kFamily, kFamily.substr(kFamily.find(",\n  \"family\"")), "}"));
-  succeed("r.json --resolution 24 --vary 0.3 --seed 6 -o single.glb --write-recipe single.json");
-  succeed(
-      "r.json --resolution 24 --vary 0.3 --members 6:8 -o rock_{member}.glb --write-recipe "
-      "rock_{member}.json "
-      "--manifest m.jsonl");
-  EXPECT_TRUE(text("single.glb") == text("rock_0000006.glb"));
-  EXPECT_TRUE(text("single.json") == text("rock_0000006.json"));
-  EXPECT_FALSE(text("rock_0000006.glb") == text("rock_0000007.glb"));
+  write("r.json", kTwoSpheres);
+  const std::string vary = "r.json --resolution 24 --vary 0.9 ";
+  succeed(vary + "--seed 1 -o single.glb --write-recipe single.json");
+  succeed(vary + "--members 1:3 -o rock_{member}.glb --write-recipe rock_{member}.json --manifest m.jsonl");
+  EXPECT_TRUE(text("single.glb") == text("rock_0000001.glb"));
+  EXPECT_TRUE(text("single.json") == text("rock_0000001.json"));
+  EXPECT_FALSE(text("rock_0000001.glb") == text("rock_0000002.glb"));
   EXPECT_TRUE(has(text("m.jsonl"), "\"similarity\":"));
 }
 

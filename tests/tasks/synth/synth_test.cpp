@@ -216,11 +216,12 @@ TEST_F(Synth, EveningTakesMemoryThatIsPredicted) {
 }
 
 TEST_F(Synth, EveningGoesWithOtherOptions) {
-  synthesise("even.obj", "--even");
-  synthesise("even.glb", "--even");
-  synthesise("even.ply.zst", "--even --min-component 0.001");
-  synthesise("labels.ply", "--even --labels");
-  synthesise("patch.ply", "--even --patch -1 0 0 0.5");
+  for (const std::string options : {"even.obj", "even.glb", "even.ply.zst --min-component 0.001",
+                                    "even.ply --labels", "even.ply --patch -1 0 0 0.5"}) {
+    const auto even = figures("r.json --resolution 32 --even -o " + options).at("even");
+    EXPECT_GT(even["moved_vertices"], 100) << options;
+    EXPECT_GT(even["quality_after"]["mean"], even["quality_before"]["mean"]) << options;
+  }
 }
 
 }  // namespace
