@@ -87,6 +87,18 @@ void check_mesh_name(const MeshJob& mesh, const std::filesystem::path& file);
 // Throws InputError for an output that cannot be written.
 void check_mesh_outputs(const Job& job, const MeshJob& mesh);
 
+// What the spec and the sinks take beyond the mesher; bytes for each triangle.
+struct MeshCost {
+  double file_bytes = 0.0;
+  double held_bytes = 0.0;   // of the whole mesh in memory and what is made of it; 0: it is streamed
+  double table_bytes = 0.0;  // beside the mesh, before it is passed on
+  double map_bytes = 0.0;    // of baked maps, all together
+  double times = 1.0;        // how often the mesh is made
+  double shares = 0.0;       // of the seconds of the mesh that its vertices take
+};
+inline constexpr double kErosionTables = 90.0;  // bytes: verticals, areas, heights and edges
+MeshCost cost_of(const MeshJob& mesh, const Recipe& recipe);
+
 // Makes the mesh of a recipe with a body, which was read from `file`, and its summary, or only predicts it.
 // Throws InputError where the request makes no sense, WorkError for a mesh that does not keep its promise.
 void make_mesh(Job& job, const MeshJob& mesh, const Recipe& recipe, const std::filesystem::path& file);

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <algorithm>
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -235,6 +235,41 @@ void check_mesh_outputs(const Job& job, const MeshJob& mesh) {
   if (sinks.landforms.empty()) return;
   require_extension(sinks.landforms, {".csv", ".json"});
   require_writable(sinks.landforms);
+}
+
+MeshCost cost_of(const MeshJob& mesh, const Recipe& recipe) {
+  // A triangle and its half vertex: half a vertex and half a normal as doubles, and a triangle; half of one
+  // array is copied as it grows.
+  constexpr double kCollected = 36.0 + 6.0;
+  // Evening keeps the mesh as it was recorded, and has neighbours, places and vertices before and after a
+  // pass.
+  constexpr double kRecorded = 24.0 + 6.0, kEvenTables = 50.0;
+  // The picture, and facets, nodes and multipoles of gravity with its eight columns at half a vertex.
+  constexpr double kPicture = 120.0, kGravityTables = 240.0;
+  constexpr double kMapTexel = 22.0;  // six maps with their floats, their borders and their files
+  constexpr double kLabelShare = 0.5, kEvenShare = 0.5;
+  const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
+  const MeshFormat& format = sinks.format();
+  const bool has_gravity = !spec.gravity.empty();
+  const double used = std::max({sinks.need_whole() ? kPicture : 0.0, recipe.erosion ? kErosionTables : 0.0,
+                                has_gravity ? kGravityTables : 0.0});
+  MeshCost cost;
+  if (format.streamed) {
+    // Two numbers of four bytes at half a vertex with labels, eight with gravity.
+    cost.file_bytes = format.file_bytes + (spec.labels ? 4.0 : has_gravity ? 16.0 : 0.0);
+    cost.held_bytes = used > 0.0 ? kCollected + used : 0.0;
+  } else {
+    // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
+    const double mapped = spec.uv.empty() ? 0.0 : 4.0;
+    cost.file_bytes = format.file_bytes + mapped;
+    cost.held_bytes = kCollected + format.kept_bytes + used + 4.0 * mapped;
+  }
+  if (spec.even) cost.held_bytes += kRecorded;
+  cost.table_bytes = spec.even ? kEvenTables : 0.0;
+  cost.map_bytes = kMapTexel * sinks.bake * sinks.bake;
+  cost.times = spec.least_component > 0.0 ? 2.0 : 1.0;
+  cost.shares = (spec.labels ? kLabelShare : 0.0) + (spec.even ? kEvenShare : 0.0);
+  return cost;
 }
 
 }  // namespace astrolith

@@ -26,40 +26,6 @@ namespace {
 
 // Seconds of one processor for a triangle and its half vertex to be checked, written and hashed.
 constexpr double kOutputSeconds = 1.2e-7;
-// Labels, and evening, as shares of the seconds of the mesh.
-constexpr double kLabelShare = 0.5, kEvenShare = 0.5;
-
-// Bytes for a triangle and its half vertex: half a vertex and half a normal as doubles, and a triangle; half
-// of one array is copied as it grows.
-constexpr double kCollected = 36.0 + 6.0;
-// Evening keeps the mesh as it was recorded, and has neighbours, places and vertices before and after a pass.
-constexpr double kRecorded = 24.0 + 6.0, kEvenTables = 50.0;
-// The tables of an erosion: verticals, areas, heights and edges.
-constexpr double kErosionTables = 90.0;
-// The picture, and facets, nodes and multipoles of gravity with its eight columns at half a vertex.
-constexpr double kPicture = 120.0, kGravityTables = 240.0;
-
-// A texel of six maps with their floats, their borders and their files.
-constexpr double kMapTexel = 22.0;
-
-// What is done with a mesh, for each triangle.
-struct UseBytes {
-  double file, memory;
-};
-
-UseBytes bytes_of_use(const MeshJob& mesh, const Recipe& recipe) {
-  const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
-  const MeshFormat& format = sinks.format();
-  const double held = std::max({sinks.need_whole() ? kPicture : 0.0, recipe.erosion ? kErosionTables : 0.0,
-                                spec.gravity.empty() ? 0.0 : kGravityTables});
-  // Two numbers of four bytes at half a vertex with labels, eight with gravity.
-  const double values = spec.labels ? 4.0 : spec.gravity.empty() ? 0.0 : 16.0;
-  // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
-  const double mapped = spec.uv.empty() ? 0.0 : 4.0;
-  if (format.streamed) return {format.file_bytes + values, held > 0.0 ? kCollected + held : 0.0};
-  return {format.file_bytes + mapped, kCollected + format.kept_bytes + held + 4.0 * mapped};
-}
-
 // Memory of the mesher and of the check of its mesh: blocks, narrowed fields, triangles and vertices of
 // layers.
 double meshing_bytes(const MeshEstimate& mesh) {
@@ -182,26 +148,23 @@ MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const Pla
   const MeshEstimate estimate =
       estimator.at(spec.triangles > 0.0 ? estimator.resolution_for(spec.triangles) : spec.resolution);
   const BrickCost bricks = cost_of_bricks(part.field, estimate, threads_of(run));
-  const UseBytes use = bytes_of_use(mesh, part.recipe);
+  const MeshCost cost = cost_of(mesh, part.recipe);
   const ErosionCost erosion = part.recipe.erosion ? cost_of_erosion(part, estimate) : ErosionCost{};
   const double gravity = spec.gravity.empty() ? 0.0 : gravity_seconds(estimator.coarse(), estimate);
   const double peak_after = static_cast<double>(peak_bytes());
   give_back_freed_memory();
-  const double even = spec.even ? estimate.triangles : 0.0;
-  const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
-                         kRecorded * even + bricks.bytes + use.memory * estimate.triangles +
-                         kMapTexel * mesh.sinks.bake * mesh.sinks.bake;
+  const double working =
+      std::max({meshing_bytes(estimate), erosion.bytes, cost.table_bytes * estimate.triangles}) +
+      bricks.bytes + cost.held_bytes * estimate.triangles + cost.map_bytes;
   MeshPrediction predicted;
   predicted.resolution = estimate.resolution;
   predicted.triangles = estimate.triangles;
-  predicted.file_bytes = use.file * estimate.triangles;
+  predicted.file_bytes = cost.file_bytes * estimate.triangles;
   predicted.peak_bytes =
       std::max(run.goes_on ? peak_after : peak_before, static_cast<double>(resident_bytes()) + working);
-  const double times = spec.least_component > 0.0 ? 2.0 : 1.0;
-  const double shares = times + (spec.labels ? kLabelShare : 0.0) + (spec.even ? kEvenShare : 0.0);
-  const double parallel =
-      shares * estimate.seconds + times * bricks.seconds + erosion.vertical_seconds + gravity;
-  const double serial = times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
+  const double parallel = (cost.times + cost.shares) * estimate.seconds + cost.times * bricks.seconds +
+                          erosion.vertical_seconds + gravity;
+  const double serial = cost.times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
   // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
   // is nearer to the clock on idle cores.
   predicted.seconds =
@@ -215,7 +178,7 @@ MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const Pla
 void require_memory(const MeshJob& mesh, const Recipe& recipe, const MeshPrediction& predicted,
                     double limit) {
   if (predicted.peak_bytes <= limit) return;
-  const bool collected = mesh.spec.even || bytes_of_use(mesh, recipe).memory > 0.0;
+  const bool collected = cost_of(mesh, recipe).held_bytes > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
