@@ -73,7 +73,8 @@ def mesh(recipe: RecipeLike, *, threads: int = 0, progress: Progress = None, **o
     figures, made = call(_synthesis.meshes, "mesh", recipe, options, threads, progress)
     said = _jobs.figures_of(figures)
     if not made or said.get("members", {}).get("failed"):
-        raise ValueError(f"mesh: {said.remarks[0] if said.remarks else 'these options make none; call synth'}")
+        failures = sorted(line for line in said.remarks if line.startswith("member "))  # members fail in any order
+        raise ValueError(f"mesh: {[*failures, *said.remarks, 'these options make none; call synth'][0]}")
     if "members" not in said:
         return _made(made[0])
     return [_made(fields) for fields in made]

@@ -172,7 +172,7 @@ def test_an_aligned_map_is_full(example, program, tmp_path):
             "--height-map", "p.tif")
     frame = json.loads((tmp_path / "p.json").read_text())
     assert frame["pixels_without_data"] == 0 and frame["up"] == list(made.up)
-    with pytest.raises(ValueError, match="aligned: is of a patch"):
+    with pytest.raises(ValueError, match="^aligned requires patch"):
         astrolith.mesh(example("itokawa_details"), aligned=True)
 
 
