@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the library of bodies, library/NAME.astro, of shape models and of the table library/bodies.json.
+"""Makes the library of bodies, library/NAME.astro, of shape models and of the table library/bodies.json, and their population.
 
     PYTHONPATH=build/release/python scripts/library.py build/release/bin FOLDER_OF_MODELS [NAME ...]
 
@@ -39,6 +39,16 @@ def volume_of(model):
     return astrolith.repair_mesh(model, all_parts=True, union=True)[0].volume
 
 
+def gather(programs, bodies):
+    """Makes the population of all bodies, populations/asteroids.astro, with what the table knows of them."""
+    with tempfile.TemporaryDirectory() as folder:
+        table = pathlib.Path(folder) / "bodies.csv"
+        rows = [f"{b['name']},{b['source']},{b.get('rotation_period_h', '')},{b.get('bulk_density_kg_m3', '')}" for b in bodies]
+        table.write_text("\n".join(["name,source,rotation_period_h,density_kg_m3", *rows]) + "\n")
+        recipes = [LIBRARY / f"{body['name']}.astro" for body in bodies]
+        subprocess.run([programs / "fit_population", *recipes, "-o", LIBRARY / "populations/asteroids.astro", "--table", table, "--unit", "m"], check=True)
+
+
 def main():
     programs, models = map(pathlib.Path, sys.argv[1:3])
     table = LIBRARY / "bodies.json"
@@ -56,6 +66,7 @@ def main():
             print(f"{body['name']:11s} {size:6d} B  mean {100 * figures['mean_distance']:.4f} %  "
                   f"max {100 * figures['max_distance']:.3f} %  volume {figures['volume_ratio']:.4f}", flush=True)  # fmt: skip
             table.write_text(json.dumps(bodies, indent=2) + "\n")
+    gather(programs, bodies["bodies"])
 
 
 if __name__ == "__main__":

@@ -95,6 +95,7 @@ __all__ = [
     "repair_mesh",
     "texture",
     "train_classifier",
+    "draw",
     "vary",
     "write_mesh",
 ]

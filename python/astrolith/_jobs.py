@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import keyword
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Optional, Union
@@ -27,7 +28,7 @@ def words(job: str, options: Descriptions, given: Mapping[str, Any]) -> GivenOpt
             hint = f"; did you mean {near[0]}?" if near else ""
             raise TypeError(f"{job}() got an unexpected keyword argument '{name}'{hint}")
         if value is not None and value is not False:
-            result.append((name.replace("_", "-"), _texts(value, name)))
+            result.append((name.rstrip("_").replace("_", "-"), _texts(value, name)))
     return result
 
 
@@ -77,7 +78,8 @@ def _value(value: str) -> str:
 
 
 def _python_name(name: str) -> str:
-    return name.replace("-", "_")
+    """A word of the language, such as class, gets an underscore: class_."""
+    return name.replace("-", "_") + "_" * keyword.iskeyword(name)
 
 
 def _in_python(meaning: str) -> str:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Optional
+import pathlib
+import tempfile
+from typing import Any, Optional
 
 from astrolith import _arrays, _options, _synthesis
 from astrolith._mesh import MeshLike, surface_of
 from astrolith._options import Progress
 from astrolith._recipe import Recipe, RecipeLike, json_of, records
+from astrolith._synth import synth
 
 
 @dataclasses.dataclass(eq=False)
@@ -67,3 +70,31 @@ def vary(
         progress,
     )
     return Variation(Recipe(records(varied)), **records(figures))
+
+
+def draw(population: RecipeLike, *, seed: int = 1, threads: int = 0, progress: Progress = None, **conditions: Any) -> Recipe:
+    """Draw a body that nobody has seen from a population of measured ones, as ``synth`` does.
+
+    Parameters
+    ----------
+    population
+        A recipe with a population, the name of its file, or ``"asteroids"``, that of the library.
+    seed
+        The number of the draw.
+    conditions
+        `diameter`, `axes`, `class_`, `source`, `near` and `details`, as :func:`synth` takes them.
+
+    Returns
+    -------
+    Recipe
+        A recipe with a body of type ``morph``.
+
+    Raises
+    ------
+    ValueError
+        The recipe has no population, or no two of its bodies fulfil the conditions.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "body.astro"
+        synth(population, write_recipe=file, seed=seed, threads=threads, progress=progress, **conditions)
+        return Recipe.read(file)

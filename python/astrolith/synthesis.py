@@ -17,7 +17,7 @@ from astrolith._recipe import Recipe, library
 from astrolith._surface import SurfaceDescription, describe_surface, realism
 from astrolith._synth import synth
 from astrolith._texture import Texture, texture
-from astrolith._variation import Variation, vary
+from astrolith._variation import Variation, draw, vary
 
 __all__ = [
     "Description",
@@ -43,6 +43,7 @@ __all__ = [
     "render",
     "synth",
     "texture",
+    "draw",
     "vary",
     "write_mesh",
 ]

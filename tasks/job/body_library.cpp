@@ -68,6 +68,8 @@ fs::path find_body(const fs::path& name) {
   for (char& letter : word) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   if (std::binary_search(bodies.begin(), bodies.end(), word))
     return library_folder() / (word + std::string(kCompactExtension));
+  const fs::path population = library_folder() / "populations" / (word + std::string(kCompactExtension));
+  if (fs::is_regular_file(population, none)) return population;
   if (exists || bodies.empty()) return name;  // whoever opens it says that it is a folder, or missing
   const std::string nearest = nearest_name(word, bodies);
   throw MissingFileError(name.string() + ": is no file and no body of the library; " +

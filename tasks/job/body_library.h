@@ -13,7 +13,8 @@ namespace astrolith {
 std::vector<std::string> library_bodies();
 
 // The file of a recipe or mesh that a person names: `name` itself, or, for a word without folder and
-// extension that is no file, the body of the library with this name, in small or capital letters. Throws
+// extension that is no file, the body of the library with this name, in small or capital letters, or the
+// population of this name in its folder populations, such as asteroids. Throws
 // MissingFileError for such a word that no body has; the message says which one was probably meant.
 std::filesystem::path find_body(const std::filesystem::path& name);
 

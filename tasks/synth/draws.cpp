@@ -4,16 +4,24 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "numerics/errors.h"
+#include "numerics/length_unit.h"
+#include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/finish/known_population.h"
+#include "synthesis/finish/lay_on_base.h"
+#include "tasks/job/body_library.h"
+#include "tasks/job/load_recipe.h"
+#include "tasks/synth/finish.h"
 
 namespace astrolith {
 namespace {
 
-constexpr std::array kOptions{"--diameter", "--axes", "--class", "--source", "--near"};
+constexpr std::array kOptions{"--diameter", "--axes", "--class", "--source", "--near", "--details"};
 
 double number_of(std::string_view text, std::string_view option, std::string_view form) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -66,6 +74,42 @@ void set_word(const std::string& text, const T (&values)[n], std::string_view (*
   }
 }
 
+// The measured body with a relief that is most like a drawn one, or null: the logarithm of the ratio of their
+// diameters counts, and one more for another class and for a model that is no camera's, which is smoother.
+const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population) {
+  const MeasuredBody* best = nullptr;
+  double least = 0.0;
+  for (const MeasuredBody& body : population.bodies) {
+    if (body.recipe.empty()) continue;
+    const double unlike = std::fabs(portable::log(body.diameter / drawn.diameter)) +
+                          (body.kind != drawn.kind) + (body.source != ShapeSource::kCamera);
+    if (best == nullptr || unlike < least) best = &body, least = unlike;
+  }
+  return best;
+}
+
+// Lays the relief of a measured body on a drawn one, as a share of their diameters.
+void lay_relief(const MeasuredBody& measured, const DrawnBody& drawn, const std::filesystem::path& file,
+                Recipe& recipe) {
+  const std::filesystem::path donor_file = find_body(file).parent_path() / measured.recipe;
+  const Recipe donor = load_recipe(donor_file);
+  for (const Layer& layer : donor.layers) {
+    if (!donor.body || !std::holds_alternative<ReliefLayer>(layer)) continue;
+    const double ratio = drawn.diameter * measured.unit / measured.diameter;
+    recipe.layers.insert(recipe.layers.begin(), rescaled(drawn_from(*donor.body, layer), ratio));
+    return;
+  }
+  throw InputError(donor_file.string() + ": holds no relief, which the population says it has; fit it anew");
+}
+
+// The known body whose landforms lie on one of this size (metres) and class.
+std::string_view known_body(double diameter, BodyClass kind) {
+  constexpr double kRubblePile = 1000.0;
+  if (diameter > kRubblePile) return "eros";
+  if (kind == BodyClass::kTop) return "bennu";
+  return kind == BodyClass::kElongated || kind == BodyClass::kContactBinary ? "itokawa" : "ryugu";
+}
+
 }  // namespace
 
 void declare_draw_options(Job& job, DrawOptions& options) {
@@ -99,6 +143,39 @@ void declare_draw_options(Job& job, DrawOptions& options) {
           "of a population: a body that has the largest share in each draw, so that all are its neighbours")
       .placeholder("BODY")
       .default_text("any");
+  job.options
+      .add_option(
+          "--details", options.details,
+          "of a population: what lies on a drawn body. relief: the ground of the measured body that is most "
+          "like "
+          "it in size and class, laid as --like lays it, some seconds a body; laws: craters and boulders by "
+          "the "
+          "counts of a known body of its size, as --finish draws them, down to a quarter of the finest size; "
+          "all: both; auto: the relief where the population has any; none")
+      .check(one_of({"auto", "all", "relief", "laws", "none"}));
+}
+
+Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& member,
+                   const BodyPopulation& population, const std::filesystem::path& file) {
+  Recipe recipe = member.recipe;
+  if (options.details == "none") return recipe;
+  const MeasuredBody* donor = options.details == "laws" ? nullptr : ground_donor(*member.body, population);
+  if (donor == nullptr && (options.details == "relief" || options.details == "all")) {
+    throw InputError(file.string() +
+                     ": population: has no body with a relief; fit_population takes recipes of fit_shape "
+                     "with one, or leave out --details");
+  }
+  job.summary["drawn_body"]["ground"] = donor == nullptr ? "" : donor->name;
+  if (donor != nullptr) {
+    lay_relief(*donor, *member.body, file, recipe);
+    job.say("ground of " + donor->name);
+  }
+  if (options.details == "relief" || options.details == "auto") return recipe;
+  constexpr double kFiner = 0.25;
+  const double meters = metres_of(recipe.length_unit);
+  const FinishOptions laws{std::string(known_body(member.body->diameter * meters, member.body->kind)), 0.0,
+                           kFiner * finest_size(recipe)};
+  return finished(job, laws, recipe, file.string(), 0.0);
 }
 
 void apply_conditions(const Job& job, const DrawOptions& options, const std::filesystem::path& file,

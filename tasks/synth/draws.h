@@ -12,6 +12,7 @@ namespace astrolith {
 
 struct DrawOptions {
   std::string diameter, axes, kind, source, near;  // empty: as the population says
+  std::string details = "auto";                    // what lies on a drawn body: --details
 };
 
 void declare_draw_options(Job& job, DrawOptions& options);
@@ -20,6 +21,13 @@ void declare_draw_options(Job& job, DrawOptions& options);
 // has none, and for numbers that break its rules. `file` is that of the recipe.
 void apply_conditions(const Job& job, const DrawOptions& options, const std::filesystem::path& file,
                       Recipe& recipe);
+
+// The recipe of a drawn body with the ground that --details asks for: the relief of the measured body that is
+// most like it, laid as a likeness, and below its heights the landforms of a known body of this size.
+// `population` holds the measured bodies, and `file` is its file, beside which their recipes lie. Throws
+// InputError where --details asks for a relief that no body has.
+Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& member,
+                   const BodyPopulation& population, const std::filesystem::path& file);
 
 // States a drawn body, its donors, class and diameter, in the summary and in words; nothing for other
 // members.

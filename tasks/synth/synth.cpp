@@ -271,9 +271,17 @@ void check_members_of(const Job& job, const Recipe& recipe) {
 
 // The body that a recipe's population gives by the recipe's own seed.
 FamilyMember single_draw(const Recipe& recipe) {
-  FamilyMember member{{}, {}, draw_body(recipe), {}, {}};
+  FamilyMember member;
+  member.body = draw_body(recipe);
   member.recipe = member.body->recipe;
   return member;
+}
+
+// The recipe of a drawn body with its ground, reported.
+Recipe grounded(Job& job, const SynthOptions& options, const FamilyMember& member,
+                const BodyPopulation& population) {
+  report_draw(job, member);
+  return with_ground(job, options.draw, member, population, options.recipe);
 }
 
 void synthesize(Job& job, const SynthOptions& options) {
@@ -282,11 +290,8 @@ void synthesize(Job& job, const SynthOptions& options) {
   const std::future<void> start = makes_mesh ? options.mesh.device.start() : std::future<void>();
   Recipe recipe = read_input(job, options);
   const bool has_members = !options.members.range.empty();
-  if (recipe.population && !has_members) {
-    const FamilyMember drawn = single_draw(recipe);
-    report_draw(job, drawn);
-    recipe = drawn.recipe;
-  }
+  if (recipe.population && !has_members)
+    recipe = grounded(job, options, single_draw(recipe), *recipe.population);
   job.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(job, options, recipe);
   if (!recipe.population) require_body(recipe, options.recipe);
@@ -308,7 +313,7 @@ void synthesize(Job& job, const SynthOptions& options) {
     const auto draw = [&](Job& part, std::uint64_t number) {
       if (recipe.population) {
         FamilyMember member = family_member(recipe, number);
-        report_draw(part, member);
+        member.recipe = grounded(part, options, member, *recipe.population);
         member.recipe = is_varied ? variation(part, member.recipe, number)
                                   : finished(part, options.finish, member.recipe, file.string(), patch_side);
         return member;

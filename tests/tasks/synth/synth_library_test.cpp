@@ -38,6 +38,24 @@ TEST_F(SynthLibrary, AWordThatIsNoFileIsABody) {
   EXPECT_EQ(text("eros/again.ply"), mesh);
 }
 
+// The population of all bodies draws others, with the ground of the one that is most like them.
+TEST_F(SynthLibrary, HasAPopulation) {
+  const nlohmann::json bare =
+      summary("asteroids --diameter 330 --class elongated --details none --resolution 32 -o b.ply");
+  EXPECT_EQ(bare["drawn_body"]["class"], "elongated");
+  EXPECT_EQ(bare["drawn_body"]["diameter"], 330.0);
+  EXPECT_EQ(bare["components"], 1);
+}
+
+TEST_F(SynthLibrary, LaysGroundOnDrawnBodiesLong) {
+  const nlohmann::json made = summary(
+      "asteroids --diameter 330 --seed 3 --details all --resolution 48 -o g.ply --write-recipe g.astro");
+  EXPECT_EQ(made["drawn_body"]["ground"], "itokawa");
+  EXPECT_TRUE(made["closed"].get<bool>());
+  succeed("g.astro -o again.ply --resolution 48");
+  EXPECT_EQ(text("again.ply"), text("g.ply"));
+}
+
 TEST_F(SynthLibrary, AFileComesBeforeABody) {
   write("eros", kTwoSpheres);
   EXPECT_EQ(synthesise("a.ply"), (succeed("eros -o b.ply --resolution 32"), text("b.ply")));
