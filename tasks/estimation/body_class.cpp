@@ -76,7 +76,7 @@ ShapeFeatures shape_features(const TriangleMesh& mesh, const BodyFrame& frame) {
 }
 
 BodyClass class_of(const ShapeFeatures& f) {
-  if (f.waist < 0.8 || (f.waist < 0.9 && f.elongation > 1.5)) return BodyClass::kContactBinary;
+  if (f.waist < 0.8) return BodyClass::kContactBinary;
   if (f.ridge > 1.03 && f.elongation < 1.15) return BodyClass::kTop;
   if (f.elongation > 1.5) return BodyClass::kElongated;
   if (f.flatness / f.elongation > 0.75) return BodyClass::kRounded;

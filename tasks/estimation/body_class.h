@@ -30,9 +30,8 @@ BodyFrame body_frame(const TriangleMesh& mesh);
 
 ShapeFeatures shape_features(const TriangleMesh& mesh, const BodyFrame& frame);
 
-// contact_binary: waist below .8, or below .9 on a body more than 1.5 times as long as wide; top: ridge
-// above 1.03 on a body whose equator is round within 15 %; elongated: elongation above 1.5; rounded: c / a
-// above .75; fragment: all others.
+// contact_binary: waist below .8; top: ridge above 1.03 on a body whose equator is round within 15 %;
+// elongated: elongation above 1.5; rounded: c / a above .75; fragment: all others.
 BodyClass class_of(const ShapeFeatures& features);
 
 }  // namespace astrolith
