@@ -1,4 +1,4 @@
-#include "tasks/description/classify.h"
+#include "tasks/description/description_jobs.h"
 
 #include "apps/program.h"
 

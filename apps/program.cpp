@@ -11,21 +11,45 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <new>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "apps/help_formatter.h"
 #include "numerics/edit_distance.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/printable_text.h"
-#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {
+
+// Help as people and help2man read it: "-t, --threads N in [0 - 1024] (default 0)" rather than CLI11's type
+// and validator names. Two spaces or a new line stand before each description.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    std::string name = CLI::Formatter::make_option_name(option, is_positional);
+    if (const std::size_t comma = name.find(','); comma != std::string::npos) name.insert(comma + 1, " ");
+    return name;
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_option_text().empty() ? "" : " " + option->get_option_text();
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    const std::size_t first_column =
+        2 + (make_option_name(option, option->get_positional()) + make_option_opts(option)).size();
+    const std::string description = CLI::Formatter::make_option_desc(option);
+    return first_column + 1 == get_column_width() ? " " + description : description;
+  }
+};
 
 std::atomic<int> g_interrupts{0};
 std::atomic<int> g_signal{0};  // that came first

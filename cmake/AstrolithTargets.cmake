@@ -44,8 +44,8 @@ target_compile_options(astrolith_warnings INTERFACE
   $<$<AND:$<BOOL:${ASTROLITH_WERROR}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>>:-Werror>)
 
 # astrolith_library(NAME [ROOMS] [SOURCES a.cpp ...] PUBLIC link ... PRIVATE link ...)
-# Makes target astrolith_NAME with alias astrolith::NAME. ROOMS says that folders inside add sources by
-# astrolith_room. A library with neither is header-only.
+# Makes target astrolith_NAME with alias astrolith::NAME. ROOMS says that astrolith_room adds the
+# sources of folders. A library with neither is header-only.
 function(astrolith_library name)
   cmake_parse_arguments(ARG "ROOMS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target astrolith_${name})
@@ -69,15 +69,18 @@ function(astrolith_library name)
   set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
 endfunction()
 
-# astrolith_room(NAME SOURCES a.cpp ... [NATIVE b.cpp ...] [WEB c.cpp ...])  adds a folder's sources to library NAME. NATIVE
-# sources need a package that WebAssembly has not; WEB sources take the place of such in the web build.
-function(astrolith_room name)
+# astrolith_room(NAME FOLDER SOURCES a.cpp ... [NATIVE b.cpp ...] [WEB c.cpp ...])  adds the sources of a folder to library
+# NAME, which the same CMakeLists.txt makes. NATIVE sources need a package that WebAssembly has not; WEB sources take the place of
+# such in the web build.
+function(astrolith_room name folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;NATIVE;WEB" ${ARGN})
   if(EMSCRIPTEN)
-    target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES} ${ARG_WEB})
+    set(sources ${ARG_SOURCES} ${ARG_WEB})
   else()
-    target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES} ${ARG_NATIVE})
+    set(sources ${ARG_SOURCES} ${ARG_NATIVE})
   endif()
+  list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/)
+  target_sources(astrolith_${name} PRIVATE ${sources})
 endfunction()
 
 # astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds NAME.cpp of this folder, with further sources

@@ -90,7 +90,7 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
   std::vector<std::vector<float>> heights(const ProbeLines& lines, const Candidates& candidates) override {
     ArrayStore store = candidates.arrays;
     BodyTables body;
-    body.leaves = store.add(std::vector<BodyLeaf>{{lines.parameters, false, {}, {}}});
+    body.leaves = store.add(std::vector<BodyLeaf>{{lines.parameters, false, {}, {}, {}}});
     const ArrayView view = store.view();
     const auto arrays = backend_.upload(std::span(view.bytes, view.size));
     const auto noises = backend_.upload(std::span<const FractalNoise>(candidates.noises));

@@ -11,7 +11,7 @@
 
 #include "cuda/backend.h"
 #include "descriptor/shape_histogram.h"
-#include "descriptor/surflet_arrays.h"
+#include "descriptor/surflet_pair.h"
 #include "numerics/progress.h"
 
 namespace astrolith {

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "descriptor/shape_histogram.h"
-#include "descriptor/surflet_arrays.h"
 #include "descriptor/surflet_pair.h"
 #include "numerics/errors.h"
 #include "numerics/reported_loop.h"

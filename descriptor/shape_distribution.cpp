@@ -83,8 +83,8 @@ ShapeDistribution shape_distribution(std::span<const Vec3d> points, int bins) {
     const std::size_t last = std::min<std::size_t>(first + kRowsPerChunk, points.size());
     counts[static_cast<std::size_t>(chunk)] = count_rows(points, first, last, bins_per_unit, bins);
   });
-  for (const auto& of_chunk : counts) {
-    for (std::size_t b = 0; b < d.counts.size(); ++b) d.counts[b] += of_chunk[b];
+  for (const auto& chunk_counts : counts) {
+    for (std::size_t b = 0; b < d.counts.size(); ++b) d.counts[b] += chunk_counts[b];
   }
   return d;
 }

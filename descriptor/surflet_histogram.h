@@ -11,6 +11,11 @@
 
 namespace astrolith {
 
+// The largest distance between two of the points, in their unit, exact up to rounding; 0 for fewer than two
+// points. Points must be finite. Pairs that cannot reach it, judged by their distances from the centre of the
+// bounding box, are not examined. Throws WorkError when progress asks to stop.
+double largest_distance(std::span<const Vec3d> points, const Progress& progress = {});
+
 // The histogram of Wahl's four features over all unordered pairs of (n) points with (n) normals of any
 // positive length, in time O(n^2). Only integers are summed, so that neither the order of the points nor the
 // number of threads matters. delta is a fraction of the exact largest distance between two of the points.

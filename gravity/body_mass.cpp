@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gravity/gauss_rule.h"
 #include "gravity/solid_harmonics.h"
 #include "numerics/reported_loop.h"
 

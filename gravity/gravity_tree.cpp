@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gravity/gauss_rule.h"
+#include "gravity/solid_harmonics.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/reported_loop.h"

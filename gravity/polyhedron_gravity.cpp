@@ -21,8 +21,8 @@ constexpr int kCrudeOrder = 3;
 constexpr double kRoughOpening = 0.5;  // radius of a node over its distance
 constexpr double kLeastAcceleration = 0.05;
 constexpr double kRoundOff = 0x1p-53;
-constexpr double kOfRounded = 5.0;    // errors of sums are nearly always below so many of their deviations
-constexpr double kOfProducts = 10.0;  // round-offs of what every value is multiplied by
+constexpr double kDeviations = 5.0;  // errors of sums are nearly always below so many of their deviations
+constexpr double kProductRoundOffs = 10.0;  // round-offs of what every value is multiplied by
 
 // Points in the tables' units, and their indices in the caller's array.
 struct Target {
@@ -214,7 +214,7 @@ GravitySums sums_within(const GravityTree& tree, const GravityBatch& points, dou
   const PointRow near = others(far);
   if (!any(near)) return sums;
   PointRow share = reference_accelerations(tree, points);
-  for (double& of_area : share) of_area *= tolerance / tree.area;
+  for (double& bound : share) bound *= tolerance / tree.area;
   walk(
       tree, points, near,
       [&](const GravityNode& node, PointRow& orders) {
@@ -229,7 +229,7 @@ GravitySums sums_within(const GravityTree& tree, const GravityBatch& points, dou
 // What rounding leaves in sums over facets at distance d, relative, as `rounded` would estimate it for facets
 // as wide as long. It grows with the square of the distance.
 double facet_error(const GravityTree& tree, double d) {
-  return 2.6 * kOfRounded * kRoundOff * std::sqrt(tree.area) * d * d / std::fabs(tree.volume);
+  return 2.6 * kDeviations * kRoundOff * std::sqrt(tree.area) * d * d / std::fabs(tree.volume);
 }
 
 // Sums and estimates of their errors.
@@ -245,8 +245,8 @@ ExactSums facet_sums(const GravityTree& tree, const PointRow& on, const GravityB
   if (any(on)) add_facets(tree.facets, points, on, exact.sums, rounded);
   for (std::size_t i = 0; i < kPointBatch; ++i) {
     const double infinite = on[i] > 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
-    exact.off_layers[i] = kOfRounded * kRoundOff * std::sqrt(rounded.layers[i]) + infinite;
-    exact.off_work[i] = kOfRounded * kRoundOff * std::sqrt(rounded.work[i]) + infinite;
+    exact.off_layers[i] = kDeviations * kRoundOff * std::sqrt(rounded.layers[i]) + infinite;
+    exact.off_work[i] = kDeviations * kRoundOff * std::sqrt(rounded.work[i]) + infinite;
   }
   return exact;
 }
@@ -272,8 +272,8 @@ ExactSums exact_sums(const GravityTree& tree, const GravityBatch& points) {
       exact.sums.work[i] = by_body.work[i];
       exact.off_work[i] = off;
     }
-    exact.off_layers[i] += kOfProducts * kRoundOff * layers(exact.sums);
-    exact.off_work[i] += kOfProducts * kRoundOff * std::fabs(exact.sums.work[i]);
+    exact.off_layers[i] += kProductRoundOffs * kRoundOff * layers(exact.sums);
+    exact.off_work[i] += kProductRoundOffs * kRoundOff * std::fabs(exact.sums.work[i]);
   }
   return exact;
 }

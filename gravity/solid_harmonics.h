@@ -2,14 +2,23 @@
 //   R_lm = r^l P_lm(cos t) e^(i m f) / (l + m)!   and   S_lm = (l - m)! P_lm(cos t) e^(i m f) / r^(l + 1),
 // with the sign of Condon and Shortley. For |y| < |x|
 //   1 / |x - y| = sum over l, m of conj(R_lm(y)) S_lm(x),   R_lm(a + b) = sum R_jk(a) R_(l-j)(m-k)(b).
-// (Hobson 1931; the scaling is that of White & Head-Gordon 1994.)
+// (Hobson 1931; the scaling is that of White & Head-Gordon 1994.) Their integrals over facets use Gauss'
+// rules on an interval and on a triangle.
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "numerics/vec3.h"
 
 namespace astrolith {
+
+struct TrianglePoint {
+  double b, c, weight;  // the point a + b (B - a) + c (C - a) of a triangle a, B, C; the weights sum to one
+};
+
+// A rule that is exact for polynomials of this degree on a triangle, degree in [0, 100].
+std::vector<TrianglePoint> triangle_rule(int degree);
 
 constexpr int kMostOrder = 10;
 constexpr int kHarmonics = (kMostOrder + 1) * (kMostOrder + 2) / 2;

@@ -1,12 +1,23 @@
 // The verticals of a body's surface, for work that needs no more than some tenths of a degree.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
 
 namespace astrolith {
+
+struct CoarseSurface {
+  TriangleMesh mesh;                // a vertex is the mean of the vertices in its cell; no normals
+  std::vector<std::uint32_t> cell;  // for each vertex of the fine mesh, its vertex here
+};
+
+// The lattice has `cells` >= 1 cells along the longest side of the mesh's box. Facets whose corners lie in
+// fewer than three cells vanish. The coarse mesh of a closed mesh is closed, and encloses about the same
+// volume as long as the body is wider than a few cells; it may touch itself.
+CoarseSurface coarse_surface(const TriangleMesh& mesh, int cells);
 
 // The density and the rotation of a body.
 struct BodyMotion {

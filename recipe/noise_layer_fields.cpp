@@ -4,13 +4,54 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "numerics/portable_double.h"
+#include "recipe/base64.h"
+#include "recipe/compact/height_picture.h"
+#include "recipe/exemplar_image.h"
 #include "recipe/fields_internal.h"
-#include "recipe/relief_text.h"
+#include "recipe/relief_layer.h"
 
 namespace astrolith {
 namespace {
+
+// The heights of the layer's pixels, coded in few bits (recipe/compact/height_picture.h), as base64. Expects
+// pixels.
+std::string relief_text(const ReliefLayer& layer) {
+  const ExemplarImage& image = *layer.pixels;
+  HeightPicture picture{image.width, image.height, image.values};
+  // Codes, from 1: small numbers take fewer bits than grey values.
+  for (std::uint16_t& value : picture.values) {
+    if (value != 0) value = static_cast<std::uint16_t>(layer.code_of(value) + 1);
+  }
+  RangeEncoder encoder;
+  encode(picture, encoder);
+  return base64_text(encoder.finish());
+}
+
+// The pixels whose text this is, for a layer with these levels; null where the text is damaged.
+std::shared_ptr<const ExemplarImage> relief_pixels(const ReliefLayer& layer, std::string_view text) {
+  constexpr std::size_t kMostPixelsOfByte = 400;  // a body's picture has some ten
+  const std::optional<std::string> bytes = base64_bytes(text);
+  if (!bytes) return nullptr;
+  try {
+    RangeDecoder decoder(*bytes);
+    HeightPicture picture = decode(kMostPixelsOfByte * bytes->size(), decoder);
+    for (std::uint16_t& value : picture.values) {
+      if (value > layer.levels) return nullptr;
+      if (value != 0) value = layer.value_of(static_cast<std::uint16_t>(value - 1));
+    }
+    return std::make_shared<ExemplarImage>(
+        ExemplarImage{picture.width, picture.height, std::move(picture.values), {}});
+  } catch (const DamagedStream&) {
+    return nullptr;
+  }
+}
 
 constexpr Noise kWorleyNoises[] = {Noise::kWorleyF1, Noise::kWorleyF2, Noise::kWorleyF2MinusF1};
 std::string_view distance_word(Noise noise) {

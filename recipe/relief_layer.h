@@ -55,7 +55,7 @@ struct ReliefLayer : NamedImage {
   int levels = 2;            // heights from low to high, 2 .. 65535
   int finer = 0;  // levels below the model (synthesis/relief/relief_levels.h), 0 .. kMostFinerLevels
 
-  // Whether the layer names no file, since the recipe holds its pixels (recipe/relief_text.h).
+  // Whether the layer names no file, since the recipe holds its pixels (noise_layer_fields.cpp).
   bool is_embedded() const { return image.empty() && image_sha256.empty(); }
   double step() const { return (high - low) / (levels - 1); }
   // The code 0 .. levels - 1 of a grey value above 0, and the grey value of a code.

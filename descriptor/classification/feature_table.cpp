@@ -1,14 +1,51 @@
 #include "descriptor/classification/feature_table.h"
 
+#include <algorithm>
+#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
+
+namespace fs = std::filesystem;
+
+bool hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(folder.string() + ": is no folder; give a folder of meshes");
+  }
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (!hidden(it->path())) entries.push_back(it->path());
+  }
+  if (error)
+    throw InputError(folder.string() + ": cannot be read (" + error.message() + "); check its rights");
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+// The last part of the name of a folder, also for "classes/bird/" and ".".
+std::string name_of(const fs::path& folder) {
+  fs::path full = fs::absolute(folder).lexically_normal();
+  if (!full.has_filename()) full = full.parent_path();
+  return full.filename().string();
+}
+
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::vector<fs::path> folders = entries_of(folder);
+  std::error_code unused;  // an entry without a status counts as no folder
+  std::erase_if(folders, [&](const fs::path& p) { return !fs::is_directory(p, unused); });
+  return folders;
+}
 
 // The message with the name of the file in front. Messages of readers begin with it already; those of
 // descriptors do not.
@@ -25,6 +62,56 @@ void keep_filled(std::vector<std::string>& lines, std::vector<std::string>& kept
 }
 
 }  // namespace
+
+std::vector<fs::path> meshes_in(const fs::path& folder) {
+  std::vector<fs::path> meshes = entries_of(folder);
+  std::error_code unused;
+  std::erase_if(meshes,
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || !has_readable_extension(p); });
+  return meshes;
+}
+
+std::vector<fs::path> others_in(const fs::path& folder) {
+  std::vector<fs::path> others = entries_of(folder);
+  std::error_code unused;
+  std::erase_if(others,
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || has_readable_extension(p); });
+  return others;
+}
+
+LabelledFiles find_classes(std::span<const fs::path> folders) {
+  std::map<std::string, std::vector<fs::path>> classes;
+  std::vector<fs::path> skipped;
+  const auto add = [&](const fs::path& folder) {
+    const std::vector<fs::path> meshes = meshes_in(folder);
+    if (meshes.empty()) {
+      throw InputError(folder.string() + ": holds no meshes; give a folder of meshes for each class");
+    }
+    auto& files = classes[name_of(folder)];
+    files.insert(files.end(), meshes.begin(), meshes.end());
+    const std::vector<fs::path> others = others_in(folder);
+    skipped.insert(skipped.end(), others.begin(), others.end());
+  };
+  for (const fs::path& folder : folders) {
+    const std::vector<fs::path> inner = folders_in(folder);
+    if (inner.empty()) {
+      add(folder);
+    } else if (!meshes_in(folder).empty()) {
+      throw InputError(folder.string() +
+                       ": holds meshes beside folders; give a class of meshes a folder of its own");
+    } else {
+      for (const fs::path& one : inner) add(one);
+    }
+  }
+  LabelledFiles result;
+  result.skipped = std::move(skipped);
+  for (const auto& [name, files] : classes) {
+    result.labels.insert(result.labels.end(), files.size(), static_cast<int>(result.classes.size()));
+    result.files.insert(result.files.end(), files.begin(), files.end());
+    result.classes.push_back(name);
+  }
+  return result;
+}
 
 FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
                                const ShapeReader& read, const Progress& progress) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "descriptor/histogram_distance.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/points/point_tree_internal.h"
 #include "geometry/surface/mesh_sampling.h"
@@ -26,7 +27,7 @@ struct Smoothed {
 Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, const PointTree& tree,
                   const SurfaceSamples& samples) {
   constexpr double kNear = kBendReach * kBendReach / (kReach * kReach);
-  constexpr double kOfMean = kReach * kReach / (kMeanReach * kMeanReach);
+  constexpr double kFine = kReach * kReach / (kMeanReach * kMeanReach);
   double weights = 0.0, near = 0.0, fine_squares = 0.0, fine_weights = 0.0;
   Vec3d normals{}, offsets{}, near_normals{}, fine_offsets{};
   for (const auto& [j, squared] : tree.within(point, reach)) {
@@ -35,7 +36,7 @@ Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, con
     weights += w;
     normals += w * samples.normals[j];
     offsets += w * (samples.points[j] - point);
-    const double fine = std::max(0.0, 1.0 - kOfMean * squared / (reach * reach));
+    const double fine = std::max(0.0, 1.0 - kFine * squared / (reach * reach));
     fine_squares += fine * squared;
     fine_weights += fine;
     fine_offsets += fine * (samples.points[j] - point);
@@ -75,6 +76,29 @@ void require_surface(const SurfaceSamples& samples, const PointTree& tree, doubl
 }
 
 }  // namespace
+
+ShapeDescription describe_evened(const TriangleMesh& mesh, const DescriptionOptions& options,
+                                 const StageProgress& progress) {
+  const auto stage = [&](const char* name) { return progress ? progress(name) : Progress(); };
+  const EvenedSurface even = even_surface(mesh, options.points, options.seed, stage("even"));
+  return describe_shape(even.points, even.normals, options, stage("describe"));
+}
+
+DescriptionOptions for_sampling(DescriptionOptions options, std::uint64_t which) {
+  options.seed += which * 0x9e3779b97f4a7c15u;
+  return options;
+}
+
+MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,
+                                      std::uint64_t seed, const StageProgress& progress) {
+  DescriptionOptions options;
+  options.seed = seed;
+  const auto histogram = [&](const TriangleMesh& mesh, std::uint64_t which) {
+    return describe_evened(mesh, for_sampling(options, which), progress).histogram;
+  };
+  const ShapeHistogram wanted = histogram(target, 0);
+  return {similarity(wanted, histogram(candidate, 1)), similarity(wanted, histogram(target, 2))};
+}
 
 double evened_edge(double area, std::int64_t n) {
   return std::sqrt(2.0 * area / (std::sqrt(3.0) * static_cast<double>(n)));

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
-#include "descriptor/surface/block_permutations.h"
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "numerics/reported_loop.h"
 #include "numerics/sample_statistics.h"
 
@@ -59,28 +60,28 @@ constexpr double kFlatTolerance = 0.05;
 std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, const LocalStatistic& b,
                                                        const Regions& regions_a, const Regions& regions_b) {
   if (!traits_of(a.quantity).only_flat) {
-    return KolmogorovSmirnov({a.values, regions_a.of_place}, {b.values, regions_b.of_place});
+    return KolmogorovSmirnov({a.values, regions_a.region_index}, {b.values, regions_b.region_index});
   }
   std::vector<double> sorted = a.values;
   std::sort(sorted.begin(), sorted.end());
   const double limit = quantile_of_sorted(sorted, kFlatShare);
   const std::vector<double> flat_a = flat_part(a.values, limit), flat_b = flat_part(b.values, limit);
-  const KolmogorovSmirnov distance({flat_a, regions_a.of_place}, {flat_b, regions_b.of_place});
+  const KolmogorovSmirnov distance({flat_a, regions_a.region_index}, {flat_b, regions_b.region_index});
   return [distance](const RegionLabels& first) { return std::max(0.0, distance(first) - kFlatTolerance); };
 }
 
-StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& of_a,
-                      const SurfaceStatistics& of_b) {
+StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& surface_a,
+                      const SurfaceStatistics& surface_b) {
   StatisticTest test;
   StatisticComparison& c = test.comparison;
   c.quantity = a.quantity;
   c.radius = c.reach = a.radius;
-  const double body_radius = std::min(of_a.body_radius, of_b.body_radius);
+  const double body_radius = std::min(surface_a.body_radius, surface_b.body_radius);
   c.counts_in_p = regions_hold(a.radius, body_radius);
   c.counts_in_distance = traits_of(a.quantity).counts_in_distance && body_holds_discs(a.radius, body_radius);
   const Summary sa = summary_of(a), sb = summary_of(b);
   c.middle_a = sa.middle, c.middle_b = sb.middle, c.spread_a = sa.spread, c.spread_b = sb.spread;
-  test.distance = distance_of(a, b, of_a.regions, of_b.regions);
+  test.distance = distance_of(a, b, surface_a.regions, surface_b.regions);
   return test;
 }
 
@@ -100,9 +101,9 @@ StatisticTest test_of(const Regions& a, const Regions& b, std::size_t lag) {
 std::vector<StatisticTest> all_tests(const SurfaceStatistics& a, const SurfaceStatistics& b) {
   check_alike(a, b);
   std::vector<StatisticTest> tests;
-  for (const LocalStatistic& of_a : a.local) {
-    const LocalStatistic* of_b = b.find(of_a.quantity, of_a.radius);
-    if (of_b != nullptr) tests.push_back(test_of(of_a, *of_b, a, b));
+  for (const LocalStatistic& statistic_a : a.local) {
+    const LocalStatistic* statistic_b = b.find(statistic_a.quantity, statistic_a.radius);
+    if (statistic_b != nullptr) tests.push_back(test_of(statistic_a, *statistic_b, a, b));
   }
   for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
     tests.push_back(test_of(a.regions, b.regions, lag));
@@ -175,6 +176,72 @@ std::optional<double> coupling_ratio(const HeightBands& a, const HeightBands& b)
 }
 
 }  // namespace
+
+RegionLabels own_regions() {
+  RegionLabels labels{};
+  std::fill_n(labels.begin(), kRegions, true);
+  return labels;
+}
+
+RegionLabels exchanged_regions(const RegionGroups& first_groups, const RegionGroups& second_groups,
+                               std::uint64_t seed, std::uint64_t k) {
+  std::array<bool, 2 * kRegionGroups> is_first{};
+  std::fill_n(is_first.begin(), kRegionGroups, true);
+  CounterRandom random(seed, k);
+  for (std::size_t i = 0; i < kRegionGroups; ++i) {
+    std::swap(is_first[i], is_first[i + random.below(is_first.size() - i)]);
+  }
+  RegionLabels labels{};
+  for (std::size_t r = 0; r < kRegions; ++r) {
+    labels[r] = is_first[first_groups[r]];
+    labels[r + kRegions] = is_first[second_groups[r] + std::size_t{kRegionGroups}];
+  }
+  return labels;
+}
+
+KolmogorovSmirnov::KolmogorovSmirnov(const RegionalValues& a, const RegionalValues& b) {
+  sorted_.reserve(a.values.size() + b.values.size());
+  for (std::size_t i = 0; i < a.values.size(); ++i) sorted_.push_back({a.values[i], a.regions[i]});
+  for (std::size_t i = 0; i < b.values.size(); ++i) {
+    sorted_.push_back({b.values[i], static_cast<std::uint8_t>(b.regions[i] + kRegions)});
+  }
+  std::stable_sort(sorted_.begin(), sorted_.end(),
+                   [](const Entry& x, const Entry& y) { return x.value < y.value; });
+}
+
+double KolmogorovSmirnov::operator()(const RegionLabels& first) const {
+  std::int64_t firsts = 0;
+  for (const Entry& e : sorted_) firsts += first[e.region] ? 1 : 0;
+  const std::int64_t others = static_cast<std::int64_t>(sorted_.size()) - firsts;
+  if (firsts == 0 || others == 0) return 0.0;
+  // Counts of both samples up to a value, each times the size of the other sample: whole numbers.
+  std::int64_t difference = 0, largest = 0;
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    difference += first[sorted_[i].region] ? others : -firsts;
+    const bool last_of_equals = i + 1 == sorted_.size() || sorted_[i].value < sorted_[i + 1].value;
+    if (last_of_equals) largest = std::max(largest, std::abs(difference));
+  }
+  return static_cast<double>(largest) / (static_cast<double>(firsts) * static_cast<double>(others));
+}
+
+CovarianceDifference::CovarianceDifference(const Regions& a, const Regions& b, std::size_t lag)
+    : variance_(0.5 * (a.variance + b.variance)) {
+  for (std::size_t r = 0; r < kRegions; ++r) {
+    sums_[r] = a.pairs[r][lag];
+    sums_[r + kRegions] = b.pairs[r][lag];
+  }
+}
+
+double CovarianceDifference::operator()(const RegionLabels& first) const {
+  std::array<PairSum, 2> totals{};
+  for (std::size_t r = 0; r < sums_.size(); ++r) {
+    PairSum& total = totals[first[r] ? 0 : 1];
+    total.products += sums_[r].products;
+    total.pairs += sums_[r].pairs;
+  }
+  if (!(totals[0].pairs > 0.0) || !(totals[1].pairs > 0.0) || !(variance_ > 0.0)) return 0.0;
+  return std::fabs(totals[0].products / totals[0].pairs - totals[1].products / totals[1].pairs) / variance_;
+}
 
 const StatisticComparison* RealismVerdict::farthest() const {
   const StatisticComparison* found = nullptr;

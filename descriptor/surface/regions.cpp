@@ -43,11 +43,11 @@ LagSums pairs_of(std::size_t i, std::span<const std::uint8_t> regions, std::span
   return sums;
 }
 
-double variance_of_means(std::span<const std::uint8_t> of_place, std::span<const double> values) {
+double variance_of_means(std::span<const std::uint8_t> region_index, std::span<const double> values) {
   std::array<double, kRegions> sums{}, counts{};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    sums[of_place[i]] += values[i];
-    counts[of_place[i]] += 1.0;
+    sums[region_index[i]] += values[i];
+    counts[region_index[i]] += 1.0;
   }
   std::vector<double> means;
   for (std::size_t r = 0; r < kRegions; ++r) {
@@ -77,12 +77,12 @@ void halve(std::span<std::uint8_t> regions, const Centers& centers, int groups, 
 
 }  // namespace
 
-RegionGroups region_groups(std::span<const std::uint8_t> of_place, std::span<const Vec3d> places) {
+RegionGroups region_groups(std::span<const std::uint8_t> region_index, std::span<const Vec3d> places) {
   Centers centers{};
   std::array<double, kRegions> counts{};
   for (std::size_t i = 0; i < places.size(); ++i) {
-    centers[of_place[i]] += places[i];
-    counts[of_place[i]] += 1.0;
+    centers[region_index[i]] += places[i];
+    counts[region_index[i]] += 1.0;
   }
   for (std::size_t r = 0; r < kRegions; ++r) {
     if (counts[r] > 0.0) centers[r] *= 1.0 / counts[r];
@@ -121,7 +121,7 @@ std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<c
   return regions;
 }
 
-Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d> places,
+Regions regional_sums(std::vector<std::uint8_t> region_index, std::span<const Vec3d> places,
                       std::span<const double> values, double edge) {
   const std::vector<double> from_mean = deviations(values);
   std::vector<LagSums> sums(places.size());
@@ -129,21 +129,21 @@ Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d>
       0, static_cast<std::int64_t>(places.size()),
       [&](std::int64_t i) {
         const auto k = static_cast<std::size_t>(i);
-        sums[k] = pairs_of(k, of_place, places, from_mean, edge);
+        sums[k] = pairs_of(k, region_index, places, from_mean, edge);
       },
       16);
   Regions regions;
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
-      PairSum& region = regions.pairs[of_place[i]][lag];
+      PairSum& region = regions.pairs[region_index[i]][lag];
       region.products += sums[i][lag].products;
       region.pairs += sums[i][lag].pairs;
     }
   }
   regions.variance = mean_square(from_mean);
-  regions.between = variance_of_means(of_place, from_mean);
-  regions.groups = region_groups(of_place, places);
-  regions.of_place = std::move(of_place);
+  regions.between = variance_of_means(region_index, from_mean);
+  regions.groups = region_groups(region_index, places);
+  regions.region_index = std::move(region_index);
   return regions;
 }
 

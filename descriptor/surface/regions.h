@@ -28,10 +28,10 @@ struct PairSum {
 };
 
 struct Regions {
-  std::vector<std::uint8_t> of_place;  // (#places) number of the region, below kRegions
-  RegionGroups groups{};               // of the regions, below kRegionGroups
-  double variance = 0.0;               // of the value over all places
-  double between = 0.0;                // variance of the regions' means
+  std::vector<std::uint8_t> region_index;  // (#places) number of the region, below kRegions
+  RegionGroups groups{};                   // of the regions, below kRegionGroups
+  double variance = 0.0;                   // of the value over all places
+  double between = 0.0;                    // variance of the regions' means
   // The pairs at each lag whose places lie in one region. Pairs of two regions would be torn when regions are
   // exchanged, which would make the test reject too often.
   std::array<std::array<PairSum, kCovarianceLags.size()>, kRegions> pairs{};
@@ -46,10 +46,10 @@ std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<c
 
 // The group of each region. The regions are halved three times along the longest axis of their centres, which
 // are the means of their places.
-RegionGroups region_groups(std::span<const std::uint8_t> of_place, std::span<const Vec3d> places);
+RegionGroups region_groups(std::span<const std::uint8_t> region_index, std::span<const Vec3d> places);
 
 // The sums of a value over the regions.  values: (#places)
-Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d> places,
+Regions regional_sums(std::vector<std::uint8_t> region_index, std::span<const Vec3d> places,
                       std::span<const double> values, double edge);
 
 }  // namespace astrolith

@@ -124,7 +124,7 @@ class PlaceMeasurement {
     for (const Vec3d& p : disc.heights) disc.residuals.push_back(p.z - quadric->height(p.x, p.y));
     disc.moments = residual_moments(disc.residuals, kNegligibleResidual);
     for (const SurfaceQuantityTraits& quantity : surface_quantities()) {
-      if (quantity.of_disc != nullptr) result.values.push_back(quantity.of_disc(disc));
+      if (quantity.disc_value != nullptr) result.values.push_back(quantity.disc_value(disc));
     }
     if (radius == lag_radius_) add_lags(disc, radius, result);
     return true;
@@ -189,7 +189,7 @@ std::vector<LocalStatistic> columns(const std::vector<PlaceValues>& places, std:
   std::vector<LocalStatistic> statistics;
   for (const double radius : radii) {
     for (std::size_t q = 0; q < surface_quantities().size(); ++q) {
-      if (surface_quantities()[q].of_disc == nullptr) continue;
+      if (surface_quantities()[q].disc_value == nullptr) continue;
       LocalStatistic statistic{static_cast<SurfaceQuantity>(q), radius, {}};
       for (const PlaceValues& place : places) statistic.values.push_back(place.values[statistics.size()]);
       statistics.push_back(std::move(statistic));

@@ -9,9 +9,9 @@
 
 #include "estimation/gabor/lobes/lobe_refinement.h"
 #include "estimation/gabor/lobes/lobe_selection.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "numerics/errors.h"
-#include "numerics/progress_stretch.h"
+#include "numerics/progress.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 

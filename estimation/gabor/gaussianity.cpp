@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "estimation/gabor/image/missing_ground.h"
+#include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
@@ -11,12 +14,36 @@
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/progress.h"
 #include "numerics/sample_statistics.h"
-#include "numerics/watched_work.h"
 #include "synthesis/gabor/gabor_texture.h"
 
 namespace astrolith {
 namespace {
+
+// Calls work(heed) on a thread of its own, and reports to `progress` from the caller's thread twenty times a
+// second meanwhile. `heed` is a Progress that any thread may call: it keeps the fraction for the next report
+// and returns false once progress has asked to stop. What work throws is thrown here. Without a progress the
+// work is called at once, with none.
+template <typename Work>
+void watched_work(const Progress& progress, std::string_view words, const Work& work) {
+  if (!progress) {
+    work(Progress{});
+    return;
+  }
+  std::atomic<bool> goes_on{true};
+  std::atomic<double> fraction{0.0};
+  std::future<void> done = std::async(std::launch::async, [&] {
+    work([&](double done_so_far, std::string_view) {
+      fraction = done_so_far;
+      return goes_on.load();
+    });
+  });
+  while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+    if (!report(progress, fraction, words)) goes_on = false;
+  }
+  done.get();
+}
 
 constexpr int kMostSide = 256, kTextures = 2;
 constexpr int kLeastSquares = 2;
@@ -164,7 +191,7 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
   const std::vector<TextureDistributions> distributions = distributions_of(squares, side);
   choice.photo = score_of_squares(distributions);
   Scores scores;
-  for (std::vector<TextureScore>& of_model : scores) of_model.resize(squares.size());
+  for (std::vector<TextureScore>& model_scores : scores) model_scores.resize(squares.size());
   const std::size_t all = scores.size() * squares.size();
   std::atomic<std::size_t> done{0};
   watched_work(progress, "comparing models", [&](const Progress& heed) {

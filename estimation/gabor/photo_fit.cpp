@@ -5,15 +5,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/image/missing_ground.h"
 #include "numerics/errors.h"
-#include "numerics/progress_stretch.h"
+#include "numerics/progress.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
 namespace {
+
+constexpr double kBytesAnyway = 55e6;         // program, libraries and threads, whatever the image
+constexpr double kBytesPerGridPoint = 390.0;  // dictionary, estimates and solver together
+
+// A pixel of a layer's image takes so much: random phases hold spectra of all pixels, exemplars their ranks.
+constexpr double kBytesPerImagePixel = 82.0, kBytesPerColorPixel = 150.0;
+
+// The bytes per pixel of the image, at the stage of the fit that holds the most.
+double bytes_per_pixel(bool colors, bool report) {
+  const double value = 8.0, decoded = 4.0, synthesis = 4.0, pictures = 6.0;
+  if (!colors) return value + std::max(decoded, synthesis + (report ? pictures : 0.0));
+  const double separating = 2.0 * 3.0 * value + decoded;  // planes and channels side by side
+  const double drawing = 3.0 * (3.0 * value + synthesis) + pictures;
+  return report ? std::max(separating, drawing) : separating;
+}
 
 PhotoFit grey_channels(GreyImage image) {
   PhotoFit photo;
@@ -62,6 +78,17 @@ std::optional<Gaussianity> tested(const GreyImage& exemplar, std::uint64_t seed,
 }
 
 }  // namespace
+
+double predicted_fit_bytes(const ImageSize& image, const PhotoFitOptions& options, bool report,
+                           bool layer_image) {
+  const double pixels = static_cast<double>(image.width) * image.height;
+  const double grid = static_cast<double>(std::min(image.width, options.fit.largest_side)) *
+                      std::min(image.height, options.fit.largest_side);
+  const double lobes = kBytesPerGridPoint * grid + bytes_per_pixel(options.colors, report) * pixels,
+               layer =
+                   layer_image ? pixels * (options.colors ? kBytesPerColorPixel : kBytesPerImagePixel) : 0.0;
+  return kBytesAnyway + std::max(lobes, layer);
+}
 
 std::size_t PhotoFit::lobes() const {
   std::size_t count = 0;

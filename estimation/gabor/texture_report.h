@@ -1,4 +1,4 @@
-// Pictures from which a person can judge a fit, and which can be put in a paper.
+// Pictures and a page from which a person can judge a fit. The pictures can be put in a paper.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,9 @@
 
 #include "estimation/gabor/gabor_fit.h"
 #include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/model_choice.h"
+#include "estimation/gabor/photo_fit.h"
+#include "estimation/page/report_page.h"
 
 namespace astrolith {
 
@@ -44,5 +47,16 @@ struct TextureReport {
 // Spectra are logarithmic over six decades, with frequency 0 in the middle. Throws InputError where a file
 // cannot be written.
 void write_texture_report(const TextureReport& report, const std::filesystem::path& folder);
+
+// The scores of all models, the one that was taken first.
+PageTable choice_table(const ModelChoice& choice);
+PageTable gaussianity_table(const Gaussianity& gaussianity);
+PageTable lobe_table(const FittedChannel& channel);
+
+// Writes index.html into a folder in which write_texture_report has written its figure; the page needs no
+// other file. `layer` says what the texture is made of: "lobes", "phase", "exemplar". A relief is as high as
+// the picture is bright. Throws InputError where a file cannot be read or written.
+void write_texture_page(const TextureReport& report, const std::string& layer, const std::string& verdict,
+                        std::vector<PageTable> tables, const std::filesystem::path& folder);
 
 }  // namespace astrolith

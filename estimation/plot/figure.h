@@ -9,13 +9,26 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/plot/axis.h"
 #include "synthesis/picture/image_file.h"
 
 struct _cairo;
 struct _cairo_surface;
 
 namespace astrolith {
+
+struct Axis {
+  double low = 0.0, high = 1.0;                       // values at the two ends; high may lie below low
+  std::vector<std::pair<double, std::string>> ticks;  // value, text
+  std::string label;
+};
+
+// An axis from low to high (low < high) with about five ticks at multiples of 1, 2 or 5 times a power of ten.
+// Ticks are at least `smallest_step` apart.
+Axis linear_axis(double low, double high, const std::string& label, double smallest_step = 0.0);
+
+// An axis of log10(value), whose ticks name the values 1, 2 and 5 times a power of ten between low and high.
+// The range is widened to whole ticks. Both ends are positive values, low <= high.
+Axis logarithmic_axis(double low, double high, const std::string& label);
 
 // A box on the page. Lengths are points, 1/72 inch; y points down.
 struct Rectangle {

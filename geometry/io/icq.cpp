@@ -17,7 +17,7 @@
 #include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/orient_faces.h"
+#include "geometry/wound_surface.h"
 #include "numerics/portable_angles.h"
 
 namespace astrolith {

@@ -22,7 +22,7 @@ struct OtherFile {
 
 constexpr const char* kUnpack = "unpack it first";
 constexpr const char* kExport = "open it in its program, and export it as .ply, .obj or .stl";
-constexpr const char* kOfPlates = "export its plates: dskexp -dsk FILE -text FILE.tab -format 1 (NAIF)";
+constexpr const char* kExportPlates = "export its plates: dskexp -dsk FILE -text FILE.tab -format 1 (NAIF)";
 
 // Files of other kinds that users hand over by mistake.
 constexpr OtherFile kOtherFiles[] = {
@@ -42,9 +42,9 @@ constexpr OtherFile kOtherFiles[] = {
      "give the file that a label names, or export a scene as .ply"},
     {"<", "HTML or XML"},
     {"{", "JSON"},
-    {"NAIF/DSK", "a SPICE DSK", kOfPlates},
-    {"DAS/DSK", "a SPICE DSK", kOfPlates},
-    {"DAF/DSK", "a SPICE DSK", kOfPlates},
+    {"NAIF/DSK", "a SPICE DSK", kExportPlates},
+    {"DAS/DSK", "a SPICE DSK", kExportPlates},
+    {"DAF/DSK", "a SPICE DSK", kExportPlates},
     {"DAS/", "a SPICE DAS"},
     {"DAF/", "a SPICE DAF"},
     {"KPL/", "a SPICE text kernel"},

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "geometry/atlas/longitude_map.h"
+#include "geometry/atlas/texture_coordinates.h"
 #include "geometry/io/format_internal.h"
 
 namespace astrolith {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/atlas/texture_coordinates.h"
-#include "geometry/atlas/vertex_tangents.h"
 #include "geometry/io/mesh_format.h"
 #include "geometry/triangle_mesh.h"
 
@@ -68,7 +67,7 @@ struct MeshFileInfo {
   bool whole_body = false;              // readers add the origin of a whole body, not that of a part
   std::vector<std::string> notes = {};  // further comment lines
   // A .glb or .obj gets texture coordinates by longitude and latitude, seen from the origin of the frame, or
-  // of a whole body (geometry/atlas/longitude_map.h). Triangles are then cut along the 180th meridian.
+  // of a whole body (geometry/atlas/texture_coordinates.h). Triangles are then cut along the 180th meridian.
   bool texture_coordinates = false;
   std::shared_ptr<const MeshSkin> skin = nullptr;  // of a .glb or .obj, instead of that; none where null
 };

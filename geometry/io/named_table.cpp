@@ -226,11 +226,11 @@ AngleUnit angle_unit(std::string_view unit) {
 
 void set_angles(const std::vector<ColumnName>& columns, TableLayout& layout) {
   const ColumnName &latitude = columns[layout.columns[0]], &longitude = columns[layout.columns[1]];
-  const AngleUnit of_latitude = angle_unit(latitude.unit), of_longitude = angle_unit(longitude.unit);
-  layout.west = of_longitude.west || std::find(kWest.begin(), kWest.end(), longitude.base) != kWest.end();
-  if (of_latitude.radians || of_longitude.radians) layout.radians = 1.0;
-  if (!of_latitude.known || of_latitude.west) layout.unknown = latitude.unit;
-  if (!of_longitude.known) layout.unknown = longitude.unit;
+  const AngleUnit latitude_unit = angle_unit(latitude.unit), longitude_unit = angle_unit(longitude.unit);
+  layout.west = longitude_unit.west || std::find(kWest.begin(), kWest.end(), longitude.base) != kWest.end();
+  if (latitude_unit.radians || longitude_unit.radians) layout.radians = 1.0;
+  if (!latitude_unit.known || latitude_unit.west) layout.unknown = latitude.unit;
+  if (!longitude_unit.known) layout.unknown = longitude.unit;
 }
 
 std::string joined(const std::vector<std::string>& names) {

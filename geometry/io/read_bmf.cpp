@@ -5,8 +5,7 @@
 
 #include "geometry/io/byte_reader_internal.h"
 #include "geometry/io/format_internal.h"
-#include "geometry/orient_faces.h"
-#include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 
 namespace astrolith {
 namespace {

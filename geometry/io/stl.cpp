@@ -5,8 +5,8 @@
 #include "geometry/io/byte_reader_internal.h"
 #include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
-#include "geometry/mesh_normals.h"
-#include "geometry/weld.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/wound_surface.h"
 
 namespace astrolith {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/surface/footprint_planes.h"
+#include "geometry/surface/height_map.h"
 
 #include <algorithm>
 #include <cmath>

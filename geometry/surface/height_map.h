@@ -1,4 +1,4 @@
-// A piece of a surface as heights over a plane.
+// A piece of a surface as heights over a plane, and the plane that fits the ground best around each pixel.
 #pragma once
 
 #include <vector>
@@ -22,5 +22,14 @@ struct HeightMap {
 // the highest height counts. Heights are multiplied by `scale`. side in [1, 16384].
 HeightMap height_map(const TriangleMesh& mesh, const GroundPlane& plane, double length, int side,
                      double scale);
+
+// All three are NaN where the square leaves the map or holds a pixel without height.
+struct FootprintPlane {
+  float along_right = 0.0f, along_ahead = 0.0f;  // rise of the plane, height units for a length unit
+  float rms = 0.0f;                              // of the heights about the plane, height units
+};
+
+// (side x side) the plane of least squares through the (2 half + 1)^2 heights about each pixel. half >= 1.
+std::vector<FootprintPlane> footprint_planes(const HeightMap& map, int half);
 
 }  // namespace astrolith

@@ -1,4 +1,5 @@
-// Gaussian curvature at points of a surface that is given as a mesh, or as points and normals alone.
+// Gaussian and mean curvature at the vertices of a triangle mesh, and Gaussian curvature at points of a
+// surface that is given as a mesh, or as points and normals alone.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,25 @@
 
 namespace astrolith {
 
+struct VertexCurvature {
+  std::vector<double> gaussian;  // (#V) 1 / length^2; 1 / r^2 on a sphere
+  std::vector<double> mean;      // (#V) 1 / length; positive where convex: 1 / r on a sphere
+  std::vector<double> area;      // (#V) mixed area of each vertex, length^2; sums to the area of the surface
+  // Vertices without a full ring of consistently oriented triangles (boundary, non-manifold, misoriented,
+  // unused) and vertices of a triangle without area, in ascending order. Their three values are 0.
+  std::vector<std::uint32_t> left_out;
+};
+
+// Curvatures by Meyer, Desbrun, Schroeder and Barr, "Discrete differential-geometry operators for
+// triangulated 2-manifolds", VisMath 2003: eq. 9 (Gaussian), eq. 8 and 5 (mean), figure 4 (mixed area). On a
+// closed manifold the sum of gaussian * area is 2 pi times the Euler characteristic. Throws InputError for
+// indices out of range.
+VertexCurvature vertex_curvature(const TriangleMesh& mesh);
+
 struct SampleCurvature {
   std::vector<double> gaussian;  // (n) 1 / length^2; 0 where it is undefined
   std::int64_t undefined = 0;    // samples without a curvature
-  // Vertices of the mesh without a curvature (VertexCurvature::left_out in geometry/surface/curvature.h).
+  // Vertices of the mesh without a curvature (VertexCurvature::left_out).
   std::int64_t vertices_left_out = 0;
 };
 

@@ -1,12 +1,25 @@
-// Nearest points on a triangle mesh, and the signed distance to it.
+// Nearest points on a triangle and on a triangle mesh, and the signed distance to it.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/vec3.h"
 
 namespace astrolith {
+
+enum class TriangleFeature : std::uint8_t { corner_a, corner_b, corner_c, side_ab, side_bc, side_ca, face };
+
+struct ClosestOnTriangle {
+  Vec3d point;
+  double squared_distance = 0;
+  TriangleFeature feature = TriangleFeature::face;
+};
+
+// The point of triangle a b c nearest to p. The triangle may have shrunk to a segment or a point. The test
+// follows the Voronoi regions of the triangle (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+ClosestOnTriangle closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 struct ClosestPoint {
   Vec3d point;                 // on the surface

@@ -1,6 +1,7 @@
 #include "numerics/files/output_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,13 +10,53 @@
 #include <cstdlib>
 #include <cstring>
 #include <random>
+#include <string>
 #include <system_error>
 #include <vector>
 
+#include "numerics/errors.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace astrolith {
 namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(const std::filesystem::path& file)
+      : number_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
+    if (number_ >= 0) return;
+    throw InputError(file.string() + ": cannot be written: " + std::strerror(errno) +
+                     "; name a file in a folder that exists");
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { ::close(number_); }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+// The size of the file in bytes; negative where it cannot be told.
+off_t size_of(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) ? status.st_size : -1;
+}
+
+bool ends_in_the_middle_of_a_line(int descriptor, off_t size) {
+  char last = '\n';
+  return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n';
+}
+
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
 
 namespace fs = std::filesystem;
 
@@ -117,6 +158,22 @@ void require_creatable(const fs::path& target) {
 }
 
 }  // namespace
+
+void append_line(const std::filesystem::path& file, std::string_view line) {
+  const Descriptor descriptor(file);
+  ::flock(descriptor.number(),
+          LOCK_EX);  // until the descriptor is closed; a file system without locks has none
+  const off_t size = size_of(descriptor.number());
+  if (size < 0) throw InputError(file.string() + ": is no regular file; name another");
+  std::string text(ends_in_the_middle_of_a_line(descriptor.number(), size) ? "\n" : "");
+  text.append(line).append(1, '\n');
+  if (write_all(descriptor.number(), text)) return;
+  const std::string reason = std::strerror(errno);
+  if (::ftruncate(descriptor.number(), size) != 0) {
+    throw WorkError(file.string() + ": holds a line that was cut short: " + reason);
+  }
+  throw WorkError(file.string() + ": cannot be written: " + reason);
+}
 
 std::array<std::atomic<const char*>, 64>& temporary_files() {
   static std::array<std::atomic<const char*>, 64> names{};
@@ -262,6 +319,15 @@ void sync_file_system(const fs::path& file) {
 }
 
 void require_writable(const fs::path& target) { const OutputFile probe(target); }
+
+void require_folder_can_be_made(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path there = std::filesystem::absolute(folder, error).lexically_normal();
+  while (!std::filesystem::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!std::filesystem::is_directory(there, error) || ::access(there.c_str(), W_OK) != 0) {
+    throw InputError(folder.string() + ": cannot make this folder; choose a place that is writable");
+  }
+}
 
 void require_other_file(const fs::path& output, const fs::path& input) {
   std::error_code none;  // files that do not exist are not the same

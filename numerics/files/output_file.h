@@ -1,4 +1,5 @@
 // Files that are whole or absent: each is written without a name and gets its name at the end.
+// Several processes may extend a file of lines, such as the manifest of a set of bodies.
 #pragma once
 
 #include <array>
@@ -14,6 +15,12 @@
 #include "numerics/errors.h"
 
 namespace astrolith {
+
+// Appends the line, which has no line break in it, and one line break. Processes that append to one file take
+// turns. A last line that was cut short by a process that died is ended first, so that it stands alone. A
+// line that cannot be written whole is taken back. Throws InputError where the file cannot be opened, and
+// WorkError when the disk is full.
+void append_line(const std::filesystem::path& file, std::string_view line);
 
 // Names of the temporary files that exist now, so that a signal handler can remove them. At most 64 are
 // recorded; further ones are not removed by the handler.
@@ -119,6 +126,9 @@ void sync_file_system(const std::filesystem::path& file);
 
 // Throws InputError when the file cannot be written. Programs call it before long work.
 void require_writable(const std::filesystem::path& target);
+
+// Throws InputError when the folder neither exists nor could be made now. Programs call it before long work.
+void require_folder_can_be_made(const std::filesystem::path& folder);
 
 // Throws InputError when writing the output would destroy the input.
 void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);

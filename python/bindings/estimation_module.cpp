@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "descriptor/classification/class_folders.h"
 #include "descriptor/classification/classifier_file.h"
 #include "descriptor/classification/feature_table.h"
 #include "numerics/errors.h"
@@ -21,7 +20,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/fit_bindings.h"
 #include "python/bindings/job.h"
-#include "tasks/repair/repair_words.h"
+#include "tasks/repair/mesh_repair.h"
 
 namespace nb = nanobind;
 

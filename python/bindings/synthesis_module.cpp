@@ -143,7 +143,7 @@ nb::typed<nb::dict, nb::str, nb::any> surface(const fs::path& name, const Rows<d
     values[nb::str(column.c_str())] = array_of<double>(std::move(statistic.values), {count});
   }
   result["values"] = values;
-  result["regions"] = array_of<std::uint8_t>(std::move(made.regions.of_place), {count});
+  result["regions"] = array_of<std::uint8_t>(std::move(made.regions.region_index), {count});
   result["places"] = array_of<double>(std::move(made.places), {count, 3});
   return result;
 }

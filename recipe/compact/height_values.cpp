@@ -1,15 +1,152 @@
 #include "recipe/compact/height_values_internal.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <vector>
 
+#include "recipe/compact/bit_mixture.h"
 #include "recipe/compact/height_predictor_internal.h"
-#include "recipe/compact/height_search_internal.h"
-#include "recipe/compact/padded_grid_internal.h"
 
 namespace astrolith {
 namespace {
+
+// A logistic distribution of a height. Both numbers are in fine units, of which a step has `unit`.
+struct HeightGuess {
+  int height = 0;
+  int error = 1;  // its expected absolute value times kErrorParts; at least 1
+};
+
+constexpr int kErrorParts = 18;
+
+class HeightSearch {
+ public:
+  // Steps are 0 .. steps - 1.
+  HeightSearch(int steps, int unit, BitCoder& coder) : steps_(steps), unit_(unit), coder_(coder) {}
+
+  // Writes `step`, or ignores it and reads one. The search starts at `best`. Both guesses and the answers in
+  // earlier searches predict each answer.
+  int code(int step, const HeightGuess& best, const std::array<HeightGuess, 2>& guesses);
+
+ private:
+  static constexpr std::size_t kErrorClasses = 16;
+  // The first bins have models of their own, up and down; the bins after them share the last model.
+  static constexpr int kMostBins = 15;
+  static constexpr std::size_t kQuestions = 2 * (kMostBins + 1);
+
+  using Mixture = BitMixture<3>;
+
+  bool at_least(int threshold, std::size_t question);
+  void find_bin(int start, int width);
+  int opinion(const HeightGuess& guess, int threshold) const;
+  std::size_t class_of(int error) const;
+
+  int steps_, unit_;
+  BitCoder& coder_;
+  std::vector<BitCounter> counters_ = std::vector<BitCounter>(kErrorClasses * kQuestions);
+  std::vector<Mixture> mixtures_ = std::vector<Mixture>(kQuestions, Mixture(kFirstWeights));
+  static constexpr Mixture::Opinions kFirstWeights = {20000, 20000, 10000};
+
+  // The search at hand.
+  int step_ = 0;
+  int low_ = 0, high_ = 0;  // the step is at least low and below high
+  std::array<HeightGuess, 2> guesses_;
+  std::size_t error_class_ = 0;
+};
+
+// The mass that a logistic distribution has between two places, of 2^40.
+std::uint64_t logistic_mass(std::int64_t from, std::int64_t to) {
+  if (from >= 0) return logistic_tail(from) - logistic_tail(to);
+  if (to <= 0) return logistic_tail(-to) - logistic_tail(-from);
+  return (std::uint64_t{1} << 40) - logistic_tail(-from) - logistic_tail(to);
+}
+
+constexpr int kMostOpinion = 10 * kOctave;
+constexpr int kBinsOfOneWidth = 8;  // the bins after them double their width
+
+int HeightSearch::code(int step, const HeightGuess& best, const std::array<HeightGuess, 2>& guesses) {
+  step_ = step;
+  low_ = 0;
+  high_ = steps_;
+  guesses_ = guesses;
+  error_class_ = class_of(best.error);
+  find_bin((best.height + unit_ / 2) / unit_, std::max(1, best.error / (2 * kErrorParts * unit_)));
+  while (high_ - low_ > 1) at_least(low_ + (high_ - low_) / 2, kMostBins + 1);
+  return low_;
+}
+
+// Goes up or down from the start until the step is in the bin.
+void HeightSearch::find_bin(int start, int width) {
+  const bool up = at_least(start, 0);
+  int edge = start;
+  for (int bin = 1;; ++bin) {
+    edge += up ? width : -width;
+    if (edge <= low_ || edge >= high_) return;
+    const int model = std::min(bin, kMostBins) + (up ? 0 : kMostBins + 1);
+    if (at_least(edge, static_cast<std::size_t>(model)) != up) return;
+    if (bin >= kBinsOfOneWidth) width *= 2;
+  }
+}
+
+bool HeightSearch::at_least(int threshold, std::size_t question) {
+  if (threshold <= low_) return true;
+  if (threshold >= high_) return false;
+  BitCounter& counter = counters_[error_class_ * kQuestions + question];
+  Mixture& mixture = mixtures_[question];
+  const Mixture::Opinions opinions = {opinion(guesses_[0], threshold), opinion(guesses_[1], threshold),
+                                      counter.opinion()};
+  const std::uint32_t one = mixture.share(opinions);
+  const bool answer = coder_.code(step_ >= threshold, one);
+  mixture.learn(opinions, one, answer);
+  counter.learn(answer);
+  (answer ? low_ : high_) = threshold;
+  return answer;
+}
+
+// A logistic distribution whose tail is 1 / (1 + 2^(x / s)) has the expected absolute value 2 s.
+int HeightSearch::opinion(const HeightGuess& guess, int threshold) const {
+  const auto place = [&](int step) {
+    const int fine = step * unit_ - unit_ / 2 - guess.height;
+    return std::int64_t{fine} * (2 * kErrorParts * kOctave) / guess.error;
+  };
+  const std::int64_t middle = place(threshold);
+  const std::uint64_t below = logistic_mass(place(low_), middle) + 1;
+  const std::uint64_t above = logistic_mass(middle, place(high_)) + 1;
+  return std::clamp(log_of(above) - log_of(below), -kMostOpinion, kMostOpinion);
+}
+
+// Half octaves of the expected error. The least class holds all errors below a sixteenth of a step.
+std::size_t HeightSearch::class_of(int error) const {
+  const int above = log_of(static_cast<std::uint64_t>(error) * 16) -
+                    log_of(static_cast<std::uint64_t>(kErrorParts * unit_));
+  return static_cast<std::size_t>(std::clamp(2 * above / kOctave, 0, static_cast<int>(kErrorClasses) - 1));
+}
+
+// A picture with a margin on three sides, so that pixels already coded can be read around every pixel.
+template <class T>
+class PaddedGrid {
+ public:
+  static constexpr int kMargin = 3;  // pixels left, right and above
+
+  PaddedGrid(int width, int height, T value)
+      : stride_(width + 2 * kMargin),
+        values_(static_cast<std::size_t>(stride_) * (height + kMargin), value) {}
+
+  T& at(int x, int y) { return values_[index(x, y)]; }
+  T at(int x, int y) const { return values_[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y + kMargin) * static_cast<std::size_t>(stride_) +
+           static_cast<std::size_t>(x + kMargin);
+  }
+
+  int stride_;
+  std::vector<T> values_;
+};
 
 struct Weight {
   int x, y;  // offset of a pixel

@@ -1,4 +1,4 @@
-#include "recipe/compact/number_lattice.h"
+#include "recipe/compact/number_table.h"
 
 #include <algorithm>
 #include <charconv>

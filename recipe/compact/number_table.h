@@ -1,21 +1,45 @@
 // Tables of numbers, such as the rows [x, y, z, radius] of metaballs, in few bits.
 //
-// A column whose numbers lie on a lattice is stored as integers. Rows in the order of spatial_order() are
-// stored as a set of points: the box of all points is halved again and again, and only the number of points
-// in each half is written (Devillers and Gandoin, "Geometric compression for interactive transmission",
-// 2000). That saves log2(n!) bits against rows in any other order.
+// A column whose numbers lie on a lattice, such as 1.25 = 5 * 25e-2, is stored as integers. Rows in the order
+// of spatial_order() are stored as a set of points: the box of all points is halved again and again, and only
+// the number of points in each half is written (Devillers and Gandoin, "Geometric compression for interactive
+// transmission", 2000). That saves log2(n!) bits against rows in any other order.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
-#include "recipe/compact/number_lattice.h"
 #include "recipe/compact/range_coder.h"
 
 namespace astrolith {
+
+// The numbers k * multiple / 10^decimals for integers k.
+struct NumberLattice {
+  int decimals = 0;           // -kMostDecimals .. kMostDecimals
+  std::int64_t multiple = 1;  // 1 .. kMostLatticeInteger
+
+  bool operator==(const NumberLattice&) const = default;
+};
+
+// Up to these limits a division or a product rounds like the decimal text of the number.
+inline constexpr int kMostDecimals = 22;
+inline constexpr std::int64_t kMostLatticeInteger = std::int64_t{1} << 53;
+
+struct LatticeNumbers {
+  NumberLattice lattice;
+  std::vector<std::int64_t> integers;  // k of every number
+};
+
+// The coarsest lattice that holds every number to its last bit, or nothing if there is none: for a number
+// with more than some 16 digits, numbers of very different sizes, -0, or one that is not finite.
+std::optional<LatticeNumbers> find_lattice(std::span<const double> numbers);
+
+// The lattice's number k, or nothing if it is beyond the limits.
+std::optional<double> lattice_number(const NumberLattice& lattice, std::int64_t k);
 
 inline constexpr std::size_t kMostTableColumns = 16;
 // Further equal rows would cost no bits, so that a few bytes could declare millions of them. A table whose

@@ -17,7 +17,7 @@ std::uint32_t hash_of(std::uint64_t bytes, int count) {
 }  // namespace
 
 TextModel::TextModel(std::string_view primer) {
-  for (std::vector<Counts>& of_order : counts_) of_order.resize(std::size_t{1} << kSlotBits);
+  for (std::vector<Counts>& counts : counts_) counts.resize(std::size_t{1} << kSlotBits);
   advance(0);
   for (const char c : primer) {
     const auto byte = static_cast<std::uint8_t>(c);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/atlas/texture_atlas.h"
-#include "geometry/atlas/vertex_tangents.h"
+#include "geometry/atlas/texture_coordinates.h"
 #include "geometry/triangle_mesh.h"
 
 namespace astrolith {

@@ -4,17 +4,111 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
 #include "numerics/reported_loop.h"
-#include "synthesis/bake/map_borders.h"
-#include "synthesis/bake/texel_occlusion.h"
+#include "numerics/tangent_frame.h"
+#include "numerics/vec3.h"
 #include "synthesis/bake/texel_surface.h"
+#include "synthesis/picture/ray_scene.h"
 
 namespace astrolith {
 namespace {
+
+struct TexelStep {
+  int x, y;
+};
+constexpr std::array<TexelStep, 8> kTexelSteps{
+    {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+
+// The 64 texels of a square of 8 x 8 have a direction each, and a blur over such a square adds all 64: each
+// direction counts as often as any other (interleaved sampling, Keller and Heidrich 2001).
+class TexelOcclusion {
+ public:
+  static constexpr int kPattern = 8;
+
+  // `mesh` has cells of this side, length units. Rays start three quarters of a cell above the surface, since
+  // the mesh does not follow details that are smaller.
+  TexelOcclusion(const TriangleMesh& mesh, double cell);
+
+  // Whether the ray of texel (x, y) leaves the body. Directions have the density of the cosine about the
+  // normal.
+  bool is_unoccluded(int x, int y, const Vec3f& place, const Vec3f& normal) const;
+
+ private:
+  RayScene scene_;
+  float offset_;                   // length units
+  std::vector<Vec3f> directions_;  // (kPattern x kPattern) about +z
+};
+
+constexpr std::uint8_t kNotCovered = 255;
+
+// Directions about +z with the density of the cosine: points of Hammersley's set on the disk, lifted to the
+// sphere (Malley).
+std::vector<Vec3f> cosine_directions(int count) {
+  std::vector<Vec3f> directions;
+  for (int i = 0; i < count; ++i) {
+    double radical = 0.0, share = 0.5;  // base 2
+    for (int bits = i; bits > 0; bits >>= 1, share *= 0.5) radical += (bits & 1) * share;
+    const double r = std::sqrt((i + 0.5) / count);
+    const auto [sine, cosine] = portable::sine_and_cosine(2.0 * std::numbers::pi * radical);
+    directions.push_back(to_float({r * cosine, r * sine, std::sqrt(1.0 - r * r)}));
+  }
+  return directions;
+}
+
+TexelOcclusion::TexelOcclusion(const TriangleMesh& mesh, double cell)
+    : scene_(mesh),
+      offset_(static_cast<float>(0.75 * cell)),
+      directions_(cosine_directions(kPattern * kPattern)) {}
+
+bool TexelOcclusion::is_unoccluded(int x, int y, const Vec3f& place, const Vec3f& normal) const {
+  const auto number = static_cast<std::size_t>((y % kPattern) * kPattern + x % kPattern);
+  const Vec3f above = place + normal * offset_, &d = directions_[number];
+  const Vec3f origin = to_float(scene_.to_unit({double{above.x}, double{above.y}, double{above.z}}));
+  const Tangents<float> frame = duff_tangents<SumRounding::kTwice>(normal, std::copysign(1.0f, normal.z));
+  return !scene_.occluded(origin, frame.first * d.x + frame.second * d.y + normal * d.z);
+}
+
+// The share of open rays about each texel, 255 for all, over the covered texels of a square of 8 x 8.
+// `unoccluded` is 1 where the ray of a texel leaves the body, and kNotCovered where it has none. Both (side x
+// side). Charts are 8 texels apart, so that the square holds texels of one chart only.
+std::vector<std::uint8_t> ambient_occlusion(std::span<const std::uint8_t> unoccluded, int side) {
+  // Half weights at both ends give each place of the pattern the weight 1 along a row.
+  constexpr int kReach = TexelOcclusion::kPattern / 2;
+  constexpr std::array<int, 2 * kReach + 1> kWeights{1, 2, 2, 2, 2, 2, 2, 2, 1};
+  std::vector<std::uint8_t> shares(unoccluded.size(), 255);
+  const auto at = [side](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+  };
+  parallel_for(0, side, [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < side; ++x) {
+      if (unoccluded[at(x, y)] == kNotCovered) continue;
+      int sum = 0, weights = 0;
+      for (int j = std::max(y - kReach, 0); j <= std::min(y + kReach, side - 1); ++j) {
+        for (int i = std::max(x - kReach, 0); i <= std::min(x + kReach, side - 1); ++i) {
+          const int value = unoccluded[at(i, j)];
+          if (value == kNotCovered) continue;
+          const int weight = kWeights[static_cast<std::size_t>(i - x + kReach)] *
+                             kWeights[static_cast<std::size_t>(j - y + kReach)];
+          sum += weight * value, weights += weight;
+        }
+      }
+      shares[at(x, y)] = static_cast<std::uint8_t>((255 * sum + weights / 2) / std::max(weights, 1));
+    }
+  });
+  return shares;
+}
 
 constexpr float kTightestCurve = 4.0f;  // texels: the radius at the ends of the map of curvature
 
@@ -57,7 +151,7 @@ class MapBaker {
         texels_(textured),
         occlusion_(sources.occluder.mesh, sources.occluder.cell),
         heights_(num_texels()),
-        open_(num_texels(), kNotCovered) {
+        unoccluded_(num_texels(), kNotCovered) {
     maps_.side = side_;
     maps_.normal.resize(3 * num_texels());
     for (std::size_t i = 0; i < num_texels(); ++i)
@@ -112,13 +206,13 @@ class MapBaker {
   void look_up_layers(const TexelTile& tile, TileWork& work) const {
     work.vertices.clear();
     work.label_of.resize(work.points.size());
-    std::array<std::int16_t, TexelTile::kMostTexels> of_square;
-    of_square.fill(-1);
+    std::array<std::int16_t, TexelTile::kMostTexels> first_texels;
+    first_texels.fill(-1);
     for (std::size_t i = 0; i < tile.num_texels(); ++i) {
       if (work.number[i] < 0) continue;
       const auto point = static_cast<std::size_t>(work.number[i]);
       const auto row = static_cast<std::size_t>(tile.padded_width());
-      std::int16_t& known = of_square[(i / row / 2) * row + (i % row) / 2];
+      std::int16_t& known = first_texels[(i / row / 2) * row + (i % row) / 2];
       if (known < 0) {
         known = static_cast<std::int16_t>(work.vertices.size());
         work.vertices.push_back({work.points[point].place(), work.points[point].normal});
@@ -146,7 +240,7 @@ class MapBaker {
     maps_.normal[3 * i + 1] = byte_of_share(v.y);
     maps_.normal[3 * i + 2] = byte_of_share(v.z);
     heights_[i] = point.height;
-    open_[i] = occlusion_.is_open(tile.x + x, tile.y + y, point.place(), point.normal) ? 1 : 0;
+    unoccluded_[i] = occlusion_.is_unoccluded(tile.x + x, tile.y + y, point.place(), point.normal) ? 1 : 0;
     maps_.curvature[i] = curvature_byte(work, at, static_cast<std::size_t>(tile.padded_width()));
     const VertexLabel& label = work.labels[static_cast<std::size_t>(work.label_of[number])];
     maps_.label[i] = static_cast<std::uint8_t>(std::min(label.label, 255));
@@ -176,14 +270,14 @@ class MapBaker {
     std::vector<std::uint8_t> covered(num_texels());
     float low = std::numeric_limits<float>::max(), high = -low;
     for (std::size_t i = 0; i < covered.size(); ++i) {
-      if (open_[i] == kNotCovered) continue;
+      if (unoccluded_[i] == kNotCovered) continue;
       covered[i] = 1;
       ++maps_.covered;
       low = std::min(low, heights_[i]), high = std::max(high, heights_[i]);
     }
     for (const std::int64_t missed : missed_) maps_.missed += missed;
-    maps_.occlusion = blurred_occlusion(open_, side_);
-    open_ = {};
+    maps_.occlusion = ambient_occlusion(unoccluded_, side_);
+    unoccluded_ = {};
     maps_.lowest = low, maps_.highest = high;
     const float range = high > low ? high - low : 1.0f, middle = std::clamp(0.0f, low, high);
     maps_.height.resize(num_texels());
@@ -207,12 +301,47 @@ class MapBaker {
   AtlasTexels texels_;
   TexelOcclusion occlusion_;
   BakedMaps maps_;
-  std::vector<float> heights_;        // length units
-  std::vector<std::uint8_t> open_;    // 1: the ray leaves the body; or kNotCovered
-  std::vector<std::int64_t> missed_;  // by tile
+  std::vector<float> heights_;            // length units
+  std::vector<std::uint8_t> unoccluded_;  // 1: the ray leaves the body; or kNotCovered
+  std::vector<std::int64_t> missed_;      // by tile
 };
 
 }  // namespace
+
+std::vector<BorderCopy> border_copies(std::span<const std::uint8_t> covered, int side, int reach) {
+  const auto width = static_cast<std::size_t>(side);
+  std::vector<std::uint8_t> known(covered.begin(), covered.end());
+  const auto neighbour = [&](std::size_t texel, const TexelStep& step) -> std::optional<std::size_t> {
+    const int x = static_cast<int>(texel % width) + step.x, y = static_cast<int>(texel / width) + step.y;
+    if (x < 0 || y < 0 || x >= side || y >= side) return std::nullopt;
+    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+  };
+  // The texels that the next ring grows from: at first those at the edge of what is covered.
+  std::vector<BorderCopy> copies, last;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (known[i] == 0) continue;
+    for (const TexelStep& step : kTexelSteps) {
+      const auto at = neighbour(i, step);
+      if (!at || known[*at] != 0) continue;
+      last.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i)});
+      break;
+    }
+  }
+  for (int ring = 0; ring < reach; ++ring) {
+    std::vector<BorderCopy> next;
+    for (const TexelStep& step : kTexelSteps) {
+      for (const BorderCopy& source : last) {
+        const auto at = neighbour(source.to, {-step.x, -step.y});
+        if (!at || known[*at] != 0) continue;
+        known[*at] = 1;
+        next.push_back({static_cast<std::uint32_t>(*at), source.from});
+      }
+    }
+    copies.insert(copies.end(), next.begin(), next.end());
+    last = std::move(next);
+  }
+  return copies;
+}
 
 BakedMaps bake_maps(const BakeSources& sources, const TexturedMesh& textured, const Progress& progress) {
   return MapBaker(sources, textured).result(progress);

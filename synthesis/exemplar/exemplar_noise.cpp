@@ -23,12 +23,13 @@ struct PlaceArrays {
 };
 
 // Writes the places of the points. The number of a tetrahedron is 8 * anchor + order.
-ASTROLITH_SIMD_CLONES void find_places(const ExemplarLattice& of_layer, int n, const float* __restrict px,
-                                       const float* __restrict py, const float* __restrict pz,
-                                       float* __restrict x, float* __restrict y, float* __restrict z,
-                                       float* __restrict w0, float* __restrict w1, float* __restrict w2,
-                                       float* __restrict w3, std::int32_t* __restrict tetrahedron) {
-  const ExemplarLattice lattice = of_layer;
+ASTROLITH_SIMD_CLONES void find_places(const ExemplarLattice& shared_lattice, int n,
+                                       const float* __restrict px, const float* __restrict py,
+                                       const float* __restrict pz, float* __restrict x, float* __restrict y,
+                                       float* __restrict z, float* __restrict w0, float* __restrict w1,
+                                       float* __restrict w2, float* __restrict w3,
+                                       std::int32_t* __restrict tetrahedron) {
+  const ExemplarLattice lattice = shared_lattice;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
     const ExemplarPlace place = exemplar_place(lattice, px[i], py[i], pz[i]);
@@ -64,12 +65,12 @@ void sharpen(std::int32_t exponent, int n, const std::array<float*, 4>& weights)
 }
 
 // Adds one anchor's part to z at n points of one tetrahedron.
-ASTROLITH_SIMD_CLONES void add_anchor(const ExemplarTexture& of_layer, const std::uint32_t* words,
-                                      const ExemplarAnchor& of_corner, int n, const float* __restrict x,
+ASTROLITH_SIMD_CLONES void add_anchor(const ExemplarTexture& shared_texture, const std::uint32_t* words,
+                                      const ExemplarAnchor& shared_anchor, int n, const float* __restrict x,
                                       const float* __restrict y, const float* __restrict z,
                                       const float* __restrict weight, float* __restrict sum) {
-  const ExemplarTexture texture = of_layer;
-  const ExemplarAnchor anchor = of_corner;
+  const ExemplarTexture texture = shared_texture;
+  const ExemplarAnchor anchor = shared_anchor;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
     sum[i] = math::fma(weight[i], anchor_value(texture, words, anchor, x[i], y[i], z[i]), sum[i]);

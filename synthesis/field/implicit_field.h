@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/surface/ground_axes.h"
+#include "geometry/surface/ground_plane.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
 #include "synthesis/body/body_tables.h"

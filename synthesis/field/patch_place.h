@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/surface/ground_axes.h"
+#include "geometry/surface/ground_plane.h"
 #include "numerics/interval.h"
 
 namespace astrolith {

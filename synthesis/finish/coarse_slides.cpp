@@ -46,7 +46,7 @@ class NeighbourLists {
 // Clusters of columns: the columns of the next coarser level.
 struct ColumnClusters {
   double radius = 0.0;
-  std::vector<std::uint32_t> of_column;  // the cluster of each column, or kNoCluster
+  std::vector<std::uint32_t> column_cluster;  // the cluster of each column, or kNoCluster
   std::vector<Vec3d> positions, up;
   std::vector<double> area;
   std::vector<GroundPair> pairs;
@@ -69,20 +69,20 @@ std::uint32_t assign_clusters(const Ground& ground, ColumnClusters& clusters) {
   const NeighbourLists neighbours(n, ground.pairs);
   std::vector<float> distance(n, std::numeric_limits<float>::max());  // squared, in squared radii
   const double scale = 1.0 / (clusters.radius * clusters.radius);
-  clusters.of_column.assign(n, kNoCluster);
+  clusters.column_cluster.assign(n, kNoCluster);
   std::vector<std::uint32_t> queue;
   std::uint32_t count = 0;
   for (std::uint32_t seed = 0; seed < n; ++seed) {
-    if (!(ground.area[seed] > 0.0) || clusters.of_column[seed] != kNoCluster) continue;
+    if (!(ground.area[seed] > 0.0) || clusters.column_cluster[seed] != kNoCluster) continue;
     queue.assign(1, seed);
-    clusters.of_column[seed] = count;
+    clusters.column_cluster[seed] = count;
     distance[seed] = 0.0f;
     for (std::size_t i = 0; i < queue.size(); ++i) {
       for (const std::uint32_t v : neighbours.of(queue[i])) {
         const auto d = static_cast<float>(scale * squared_norm(ground.positions[v] - ground.positions[seed]));
         if (!(d < 1.0f && d < distance[v])) continue;
         distance[v] = d;
-        clusters.of_column[v] = count;
+        clusters.column_cluster[v] = count;
         queue.push_back(v);
       }
     }
@@ -96,8 +96,8 @@ void sum_columns(const Ground& ground, std::uint32_t count, ColumnClusters& clus
   clusters.area.assign(count, 0.0);
   clusters.positions.assign(count, {});
   clusters.up.assign(count, {});
-  for (std::size_t v = 0; v < clusters.of_column.size(); ++v) {
-    const std::uint32_t c = clusters.of_column[v];
+  for (std::size_t v = 0; v < clusters.column_cluster.size(); ++v) {
+    const std::uint32_t c = clusters.column_cluster[v];
     if (c == kNoCluster) continue;
     clusters.area[c] += ground.area[v];
     clusters.positions[c] += ground.area[v] * ground.positions[v];
@@ -111,7 +111,7 @@ void sum_columns(const Ground& ground, std::uint32_t count, ColumnClusters& clus
 
 void join_neighbours(const Ground& ground, ColumnClusters& clusters) {
   for (const GroundPair& pair : ground.pairs) {
-    const auto [a, b] = std::minmax(clusters.of_column[pair.a], clusters.of_column[pair.b]);
+    const auto [a, b] = std::minmax(clusters.column_cluster[pair.a], clusters.column_cluster[pair.b]);
     if (a != b && b != kNoCluster) clusters.pairs.push_back({a, b});
   }
   std::sort(clusters.pairs.begin(), clusters.pairs.end());
@@ -186,7 +186,7 @@ class SmoothSpread {
            std::span<double> heights) const {
     const double scale = 1.0 / ((kReach * clusters_.radius) * (kReach * clusters_.radius));
     for (std::size_t v = 0; v < heights.size(); ++v) {
-      const std::uint32_t own = clusters_.of_column[v];
+      const std::uint32_t own = clusters_.column_cluster[v];
       if (own == kNoCluster || rises_[own] == 0.0) continue;
       double sum = 0.0, weights = 0.0;
       const auto add_plane = [&](std::uint32_t c) {
@@ -217,7 +217,7 @@ std::vector<double> rises_of_columns(const Ground& ground, const ColumnClusters&
   spread.add(rises, gradients(clusters, neighbours, rises), heights);
   std::vector<double> lacking(rises.begin(), rises.end());
   for (std::size_t v = 0; v < heights.size(); ++v) {
-    const std::uint32_t c = clusters.of_column[v];
+    const std::uint32_t c = clusters.column_cluster[v];
     if (c != kNoCluster) lacking[c] -= ground.area[v] * heights[v] / clusters.area[c];
   }
   spread.add(lacking, {}, heights);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
 #include "numerics/portable_angles.h"
 #include "synthesis/finish/ground_slides_internal.h"

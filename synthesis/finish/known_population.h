@@ -4,7 +4,8 @@
 //   Finish finish = finish_recipe(read_recipe("itokawa.json"), "itokawa.json", {"itokawa", 4.0, 0.05});
 //
 // The layers that are added draw their landforms by cells (recipe/landforms.h), so that a patch of metres
-// has what the body has down to centimetres.
+// has what the body has down to centimetres. Where a relief shows smooth ground, boulders lie on rough ground
+// alone.
 #pragma once
 
 #include <optional>
@@ -16,6 +17,17 @@
 #include "recipe/recipe.h"
 
 namespace astrolith {
+
+struct RoughGround {
+  LayerMask mask;            // for a population: the relief's roughness over the distance of its heights
+  double mean_weight = 1.0;  // of the mask over the body, in (0, 1]
+};
+
+// The rough ground of the recipe's last relief, which gets a name where it has none. Boulders of a rubble
+// pile gather where the ground is rough. The weight is 1 from the median roughness up, and 0 below a quarter
+// of it and on the smoothest tenth of the ground, where a relief shows no more than the steps of its heights.
+// None where the recipe has no relief, or one without roughness.
+std::optional<RoughGround> rough_ground(Recipe& recipe);
 
 // Landforms of one kind on a known body, between two sizes. The number of at least D on a square kilometre is
 //   N(D) = number_of_reference (D / reference)^-exponent,   or

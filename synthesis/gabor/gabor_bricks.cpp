@@ -72,11 +72,11 @@ std::shared_ptr<const GaborBrick> GaborBricks::brick(const std::array<int, 3>& i
 }
 
 double GaborBricks::seconds_of_brick() const {
-  constexpr std::size_t kOfShard = 6;
+  constexpr std::size_t kMostOfShard = 6;
   std::vector<std::uint64_t> keys;
   for (GaborBrickCache::Shard& shard : *cache_.shards) {
     const std::lock_guard lock(shard.mutex);
-    for (std::size_t i = 0; i < std::min(kOfShard, shard.oldest_first.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMostOfShard, shard.oldest_first.size()); ++i)
       keys.push_back(shard.oldest_first[i]);
   }
   if (keys.empty()) return 0.0;

@@ -112,8 +112,8 @@ ASTROLITH_KERNEL void add_kernel(const PlaneImpulse& k, float* __restrict height
   const int begin_y = kWidth + k.begin_y - first_y, end_y = kWidth + k.end_y - first_y;
   std::array<float, std::size_t{2 * kWidth}> cosine, sine;
   for (int block = 0; block < 2 * kWidth; block += kProfileBlock) {
-    const bool of_columns = block < end_x && begin_x < block + kProfileBlock;
-    if (!of_columns && !(block < end_y && begin_y < block + kProfileBlock)) continue;
+    const bool in_columns = block < end_x && begin_x < block + kProfileBlock;
+    if (!in_columns && !(block < end_y && begin_y < block + kProfileBlock)) continue;
 #pragma omp simd
     for (int i = block; i < block + kProfileBlock; ++i) {
       const bool is_column = i < kWidth;

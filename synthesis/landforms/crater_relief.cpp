@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "numerics/errors.h"
-#include "synthesis/landforms/crater_bounds.h"
 
 namespace astrolith {
 namespace {

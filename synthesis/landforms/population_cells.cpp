@@ -222,8 +222,8 @@ SizesByCells sizes_by_cells(const Population& population, const BareSurface& sur
   double number = 0.0, variance = 0.0, left_out = 0.0;
   for (const SizeClass& size : classes_of(population, surface)) {
     const double lower = std::max(population.least_diameter, 0.5 * size.upper);
-    const double of_size = *population.density * (size.high_share - std::max(size.low_share, 0.0)),
-                 on_body = of_size * surface.area(), part = variance_of(population, size);
+    const double size_density = *population.density * (size.high_share - std::max(size.low_share, 0.0)),
+                 on_body = size_density * surface.area(), part = variance_of(population, size);
     variance += part;
     const bool few = !whole_body || number + on_body <= kMostByCellsOnBody;
     if (sizes.classes == size.number && lower >= finest && few) {

@@ -10,13 +10,43 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/triangle_mesh.h"
+#include "numerics/box_tree.h"
 #include "numerics/hash_random.h"
-#include "numerics/own_loops.h"
+#include "numerics/parallel_for.h"
 #include "numerics/processor_clock.h"
 #include "synthesis/mesh/mesher.h"
-#include "synthesis/mesh/probed_surface.h"
 
 namespace astrolith {
+
+class ProbedSurface {
+ public:
+  ProbedSurface() = default;
+  // Points are drawn from the triangles whose centres lie within the box, and area() is theirs.
+  ProbedSurface(TriangleMesh mesh, const Box& within);
+
+  bool empty() const { return !(area() > 0.0); }
+  double area() const { return areas_.empty() ? 0.0 : areas_.back(); }  // square length units
+
+  struct Point {
+    Vec3d position;
+    Vec3d normal;  // unit length, outwards
+  };
+  // The point number `index` of a sequence whose beginnings all lie evenly over the area. Expects a surface
+  // that is not empty.
+  Point point(int index) const;
+
+  // The largest share of the area that lies in a slab of this height across the z axis; 0 to 1.
+  double largest_share(double height) const;
+
+  // The area within a box, of all triangles.
+  double area_within(const Box& box) const;
+
+ private:
+  TriangleMesh mesh_;
+  std::vector<double> areas_;  // of the triangles up to this one
+  BoxTree tree_;               // of the triangles' boxes
+};
 
 // What the mesher takes for a square length unit of the coarse mesh, as the mean of some probes.
 struct ProbeFigures {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "geometry/mesh_normals.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/picture/preview_rays_internal.h"

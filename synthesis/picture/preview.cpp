@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/mesh_normals.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"

@@ -45,7 +45,7 @@ ASTROLITH_HD inline ReliefTilePair tiles_of_part(std::int32_t tile, const Relief
   if (tile >= 0) return {tile, tile};
   const ReliefSplit& split = splits[-1 - tile];
   constexpr double kRounding = 1e-4;  // spacings
-  const Interval by_u = scaled(split.of_u, part.u), by_v = scaled(split.of_v, part.v);
+  const Interval by_u = scaled(split.slope_u, part.u), by_v = scaled(split.slope_v, part.v);
   const double low = split.at + by_u.low + by_v.low - kRounding,
                high = split.at + by_u.high + by_v.high + kRounding;
   return {part.w.low > high ? split.upper : split.lower, part.w.high < low ? split.lower : split.upper};
@@ -54,7 +54,7 @@ ASTROLITH_HD inline ReliefTilePair tiles_of_part(std::int32_t tile, const Relief
 // Whether all points of a part belong to the sheet of a tile in full (reach_of_sheet).
 ASTROLITH_HD inline bool reaches_part(const ReliefSheet& s, const ReliefPart::Along& part) {
   constexpr double kRounding = 1e-4;  // spacings
-  const Interval by_u = scaled(s.of_u, part.u), by_v = scaled(s.of_v, part.v);
+  const Interval by_u = scaled(s.slope_u, part.u), by_v = scaled(s.slope_v, part.v);
   const double low = part.w.low - (s.at + by_u.high + by_v.high),
                high = part.w.high - (s.at + by_u.low + by_v.low);
   return std::max(-low, high) + kRounding < s.farthest - 1.0 / s.inverse_fade;
@@ -89,12 +89,12 @@ ASTROLITH_HD inline void extend_codes(const std::uint32_t* words, const Interval
   }
 }
 
-// A bound of how the sum of of_word(word) over a tile changes from the middle of a part on.
-template <class OfWord>
+// A bound of how the sum of word_value(word) over a tile changes from the middle of a part on.
+template <class WordValue>
 ASTROLITH_HD double change_of_sum(const std::uint32_t* words, const Interval& u, const Interval& v,
-                                  const OfWord& of_word) {
+                                  const WordValue& word_value) {
   const ReliefPlacesAlong row = places_along(u), column = places_along(v);
-  const auto at = [&](std::int32_t i, std::int32_t j) { return of_word(words[j * kReliefTileSide + i]); };
+  const auto at = [&](std::int32_t i, std::int32_t j) { return word_value(words[j * kReliefTileSide + i]); };
   double along_u = 0.0, along_v = 0.0;
   for (std::int32_t j = column.first; j <= column.last; ++j) {
     for (std::int32_t i = row.first; i <= row.last; ++i) {
@@ -113,13 +113,13 @@ ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& a
   constexpr double kNarrow = 1.0;  // spacings; slopes say little of wider parts
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{part.cell};
   const std::uint32_t* words = arrays[n.words];
-  ReliefTilePair of_axis[3];
+  ReliefTilePair axis_tiles[3];
   ReliefCodes all;
   std::uint32_t least_weight = 0;
   bool one_tile = true, in_full = true;
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
-    const ReliefTilePair pair = of_axis[a] = tiles_of_part(tiles[a], arrays[n.splits], at);
+    const ReliefTilePair pair = axis_tiles[a] = tiles_of_part(tiles[a], arrays[n.splits], at);
     if (pair.lower == 0 && pair.upper == 0) continue;  // empty
     all.weight = 0xffff;
     extend_codes(words + kReliefTileSize * pair.lower, at.u, at.v, all);
@@ -140,10 +140,10 @@ ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& a
   double weight = double{sums.weight}, change = 0.0;
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
-    const std::uint32_t* of_tile = words + kReliefTileSize * of_axis[a].lower;
-    weight -= change_of_sum(of_tile, at.u, at.v,
+    const std::uint32_t* tile_words = words + kReliefTileSize * axis_tiles[a].lower;
+    weight -= change_of_sum(tile_words, at.u, at.v,
                             [](std::uint32_t word) { return static_cast<double>(word >> 16); });
-    change += change_of_sum(of_tile, at.u, at.v, [&](std::uint32_t word) {
+    change += change_of_sum(tile_words, at.u, at.v, [&](std::uint32_t word) {
       const double height = double{n.low} + double{n.step} * static_cast<double>(word & 0xffffu);
       return static_cast<double>(word >> 16) * (height - middle);
     });

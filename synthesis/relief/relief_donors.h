@@ -18,7 +18,7 @@ struct ReliefDonor {
 // Boxes around both lists of anchors are laid on each other, so that a place of one body has its own place on
 // the measured body. Donors come from within `reach` of it (a share of the diagonal of the measured box), but
 // not from within the distance of two anchors, and are as rough to a tenth of all ranks. With `fill` unseen
-// ground (relief_anchors.h) gets patches from anywhere, and gives none.
+// ground (relief_patches.h) gets patches from anywhere, and gives none.
 class ReliefDonors {
  public:
   // `patches` must outlive this.

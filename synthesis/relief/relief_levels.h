@@ -1,5 +1,5 @@
 // Levels of a relief below the edges of the model that was measured: its own ground on a plane that repeats
-// (relief_texture.h), a quarter as large from level to level, tiled and blended as an exemplar is.
+// (relief_level_ground.h), a quarter as large from level to level, tiled and blended as an exemplar is.
 #pragma once
 
 #include <cstdint>

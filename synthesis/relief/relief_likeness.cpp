@@ -10,7 +10,7 @@
 #include "numerics/sample_statistics.h"
 #include "synthesis/relief/relief_donors.h"
 #include "synthesis/relief/relief_laying.h"
-#include "synthesis/relief/relief_shares.h"
+#include "synthesis/relief/relief_tiles.h"
 #include "synthesis/relief/relief_values.h"
 
 namespace astrolith {

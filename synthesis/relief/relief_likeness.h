@@ -12,7 +12,7 @@ namespace astrolith {
 
 struct LikenessOptions {
   double reach = 0.3;  // how far donors are looked for at first, as a share of the body's diagonal
-  bool fill = false;   // whether unseen ground (relief_anchors.h) gets patches of seen ground
+  bool fill = false;   // whether unseen ground (relief_patches.h) gets patches of seen ground
   std::uint32_t hash = 0;
 };
 

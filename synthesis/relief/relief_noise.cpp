@@ -11,7 +11,7 @@
 #include "synthesis/relief/relief_level_ground.h"
 #include "synthesis/relief/relief_likeness.h"
 #include "synthesis/relief/relief_picture.h"
-#include "synthesis/relief/relief_room.h"
+#include "synthesis/relief/relief_values.h"
 
 namespace astrolith {
 namespace {
@@ -128,17 +128,17 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
 
 // The bounds of the codes in each cell.
 std::vector<ReliefCodeRange> ranges_of(const ReliefTiles& tiles, const std::vector<std::uint16_t>& codes) {
-  std::vector<ReliefCodeRange> of_tile(tiles.num_tiles(), {0xffff, 0});
+  std::vector<ReliefCodeRange> tile_ranges(tiles.num_tiles(), {0xffff, 0});
   for (std::size_t i = 0; i < tiles.places.size(); ++i) {
     if (tiles.places[i] == kNoPlace) continue;
-    ReliefCodeRange& r = of_tile[i / kReliefTileSize];
+    ReliefCodeRange& r = tile_ranges[i / kReliefTileSize];
     r.least = std::min(r.least, codes[tiles.places[i]]);
     r.greatest = std::max(r.greatest, codes[tiles.places[i]]);
   }
   std::vector<ReliefCodeRange> ranges(tiles.tiles.size() / 3, {0xffff, 0});
   for (std::size_t i = 0; i < tiles.tiles.size(); ++i) {
     const auto extend = [&](std::int32_t tile) {
-      const ReliefCodeRange& r = of_tile[static_cast<std::size_t>(tile)];
+      const ReliefCodeRange& r = tile_ranges[static_cast<std::size_t>(tile)];
       ranges[i / 3].least = std::min(ranges[i / 3].least, r.least);
       ranges[i / 3].greatest = std::max(ranges[i / 3].greatest, r.greatest);
     };
@@ -156,11 +156,11 @@ std::vector<ReliefCodeRange> ranges_of(const ReliefTiles& tiles, const std::vect
 constexpr int kChunk = 256;  // points whose arrays stay in the first cache
 
 // Writes the cells of points, and their coordinates from the corners of the cells.
-ASTROLITH_SIMD_CLONES void find_cells(const ReliefNoise& of_layer, int n, const float* __restrict px,
+ASTROLITH_SIMD_CLONES void find_cells(const ReliefNoise& shared_noise, int n, const float* __restrict px,
                                       const float* __restrict py, const float* __restrict pz,
                                       std::int32_t* __restrict cell, float* __restrict x, float* __restrict y,
                                       float* __restrict z) {
-  const ReliefNoise noise = of_layer;
+  const ReliefNoise noise = shared_noise;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
     const ReliefPoint p = relief_point(noise, {px[i], py[i], pz[i]});
@@ -187,11 +187,11 @@ ASTROLITH_SIMD_CLONES void add_footprints(const std::uint32_t* words, const std:
   for (int begin = 0, end = 0; begin < n; begin = end) {
     while (end < n && first[end] == first[begin]) ++end;
     if (first[begin] < kReliefTileSize) continue;  // the empty tile adds exactly nothing
-    const std::uint32_t* of_all = words + first[begin];
+    const std::uint32_t* all_words = words + first[begin];
 #pragma omp simd simdlen(4)
     for (int i = begin; i < end; ++i) {
       ReliefSums sums{weight[i], code[i]};
-      add_relief_words(of_all, u[i], v[i], reach[i], sums);
+      add_relief_words(all_words, u[i], v[i], reach[i], sums);
       weight[i] = sums.weight, code[i] = sums.code;
     }
   }
@@ -230,8 +230,8 @@ struct ChunkPlaces {
     for (std::size_t a = 0; a < 3; ++a) {
       u[a] = at[(a + 1) % 3], v[a] = at[(a + 2) % 3];
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        const std::int32_t of_axis = tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)];
-        first[a][i] = relief_tile(of_axis, splits, u[a][i], v[a][i], at[a][i]);
+        const std::int32_t axis_tile = tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)];
+        first[a][i] = relief_tile(axis_tile, splits, u[a][i], v[a][i], at[a][i]);
         any[a] |= first[a][i] != 0;
       }
       if (!any[a]) continue;

@@ -80,7 +80,7 @@ struct ReliefSums {
 
 // 1 near a sheet, 0 far from it. `off` is the distance from its plane along its axis, in spacings.
 ASTROLITH_KERNEL float reach_of_sheet(const ReliefSheet& s, float u, float v, float w) {
-  const float off = w - math::fma(s.of_u, u, math::fma(s.of_v, v, s.at));
+  const float off = w - math::fma(s.slope_u, u, math::fma(s.slope_v, v, s.at));
   return math::clamp((s.farthest - math::abs(off)) * s.inverse_fade, 0.0f, 1.0f);
 }
 
@@ -155,7 +155,7 @@ ASTROLITH_HD inline std::int32_t relief_tile(std::int32_t tile, const ReliefSpli
                                              float w) {
   if (tile >= 0) return tile;
   const ReliefSplit& s = splits[-1 - tile];
-  return w > math::fma(s.of_u, u, math::fma(s.of_v, v, s.at)) ? s.upper : s.lower;
+  return w > math::fma(s.slope_u, u, math::fma(s.slope_v, v, s.at)) ? s.upper : s.lower;
 }
 
 // Around a point of a smooth surface the weights sum to 65535 (1/3 - 1/5)^2 / (4/5)^2 * 3 = 5461 at least.
@@ -174,8 +174,8 @@ ASTROLITH_HD inline ReliefSums sums_in_lattice(const ReliefNoise& n, const std::
   const ReliefSplit* splits = arrays[n.splits];
   const ReliefSheet* sheets = arrays[n.sheets];
   ReliefSums sums;
-  const auto add = [&](std::int32_t of_axis, float u, float v, float w) {
-    const std::int32_t tile = relief_tile(of_axis, splits, u, v, w);
+  const auto add = [&](std::int32_t axis_tile, float u, float v, float w) {
+    const std::int32_t tile = relief_tile(axis_tile, splits, u, v, w);
     const ReliefFootprint f = relief_footprint(kReliefTileSize * tile, u, v);
     add_relief_words(words + f.first, f.u, f.v, reach_of_sheet(sheets[tile], u, v, w), sums);
   };

@@ -131,8 +131,8 @@ class PlaceFinder {
         parts[static_cast<std::size_t>(i)] = parts_of(boxes[static_cast<std::size_t>(i)]);
       });
       boxes.clear();
-      for (std::vector<BlockBox>& of_box : parts) {
-        boxes.insert(boxes.end(), std::move_iterator(of_box.begin()), std::move_iterator(of_box.end()));
+      for (std::vector<BlockBox>& part : parts) {
+        boxes.insert(boxes.end(), std::move_iterator(part.begin()), std::move_iterator(part.end()));
       }
       if (boxes.size() > kMostBoxes) refuse();
     }
@@ -154,9 +154,9 @@ class PlaceFinder {
   std::vector<ReliefPlace> sorted(std::vector<std::vector<ReliefPlace>>& found) const {
     std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = -low;
     std::size_t total = 0;
-    for (const std::vector<ReliefPlace>& of_block : found) {
-      total += of_block.size();
-      for (const ReliefPlace& p : of_block) {
+    for (const std::vector<ReliefPlace>& block_places : found) {
+      total += block_places.size();
+      for (const ReliefPlace& p : block_places) {
         low = std::min<std::int64_t>(low, p.v), high = std::max<std::int64_t>(high, p.v);
       }
     }
@@ -166,15 +166,15 @@ class PlaceFinder {
       return static_cast<std::size_t>(p.axis * (high - low + 1) + p.v - low);
     };
     std::vector<std::size_t> first(3 * static_cast<std::size_t>(high - low + 1) + 1, 0);
-    for (const std::vector<ReliefPlace>& of_block : found) {
-      for (const ReliefPlace& p : of_block) ++first[row(p) + 1];
+    for (const std::vector<ReliefPlace>& block_places : found) {
+      for (const ReliefPlace& p : block_places) ++first[row(p) + 1];
     }
     for (std::size_t i = 0; i + 1 < first.size(); ++i) first[i + 1] += first[i];
     std::vector<ReliefPlace> places(total);
     std::vector<std::size_t> next(first.begin(), first.end() - 1);
-    for (std::vector<ReliefPlace>& of_block : found) {
-      for (const ReliefPlace& p : of_block) places[next[row(p)]++] = p;
-      std::vector<ReliefPlace>().swap(of_block);
+    for (std::vector<ReliefPlace>& block_places : found) {
+      for (const ReliefPlace& p : block_places) places[next[row(p)]++] = p;
+      std::vector<ReliefPlace>().swap(block_places);
     }
     parallel_for(0, static_cast<std::int64_t>(first.size()) - 1, [&](std::int64_t number) {
       const auto at = [&](std::size_t i) { return places.begin() + static_cast<std::ptrdiff_t>(first[i]); };
@@ -250,12 +250,12 @@ class PlaceFinder {
   }
 
   // The places on edges of the lattice that begin in a block.
-  std::vector<ReliefPlace> places_in(const BlockBox& of_one) const {
+  std::vector<ReliefPlace> places_in(const BlockBox& block_box) const {
     constexpr std::size_t kAll = std::size_t{kNodes} * kNodes * kNodes;
     std::vector<char> marked(kAll, 0);
-    if (!mark_nodes(of_one, marked)) return {};
-    const std::array<std::int64_t, 3> low = first_node(of_one);
-    const BlockOfNodes block(ground_, of_one.metaballs, spacing_, low, kNodes, 1);
+    if (!mark_nodes(block_box, marked)) return {};
+    const std::array<std::int64_t, 3> low = first_node(block_box);
+    const BlockOfNodes block(ground_, block_box.metaballs, spacing_, low, kNodes, 1);
     std::vector<float> s(kAll);
     block.evaluate(marked, s);
     constexpr std::array<std::size_t, 3> kStep{1, kNodes, kNodes * kNodes};

@@ -63,14 +63,15 @@ ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first
   for (std::size_t f = 0; f < kMostFields; ++f) fields[f] = p.fields[three_fields ? f : 0].data();
   for (std::uint32_t k = first; k < end; ++k) {
     const float x = p.x[k], y = p.y[k], z = p.z[k], nx = p.nx[k], ny = p.ny[k], nz = p.nz[k],
-                of_place = p.weight[k], value0 = fields[0][k], value1 = fields[1][k], value2 = fields[2][k];
+                place_weight = p.weight[k], value0 = fields[0][k], value1 = fields[1][k],
+                value2 = fields[2][k];
 #pragma omp simd
     for (int i = 0; i < kPlacesAtOnce; ++i) {
       const float dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
       const float squared = dx * dx + dy * dy + dz * dz;
       const float facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
       const float near = 1.0f - squared * inverse, square = near * near;
-      const float any = square * square * facing * of_place;
+      const float any = square * square * facing * place_weight;
       const float within = squared < squared_radius ? any : 0.0f, weight = facing > 0.0f ? within : 0.0f;
       l.total[i] += weight;
       l.sums[0][i] += weight * value0;
@@ -90,7 +91,7 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
   const std::vector<std::uint32_t>& order = points.order();
   ThreeFields means;
   for (std::size_t f = 0; f < fields.size(); ++f) means[f].resize(points.size());
-  const auto of_few = [&](std::uint32_t first, std::uint32_t count) {
+  const auto add_run = [&](std::uint32_t first, std::uint32_t count) {
     LaneSums lanes;
     Box box;
     for (std::uint32_t i = 0; i < kPlacesAtOnce; ++i) {
@@ -116,7 +117,7 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
         const std::size_t c = static_cast<std::size_t>(number) * stride;
         const std::uint32_t end = points.first_of_cell(c + 1);
         for (std::uint32_t first = points.first_of_cell(c); first < end; first += kPlacesAtOnce)
-          of_few(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
+          add_run(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
       },
       8);
   return means;

@@ -1,6 +1,7 @@
 #include "synthesis/relief/relief_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,6 +13,13 @@
 namespace astrolith {
 namespace {
 
+// The weights of the four places next to a point, which lies t in [0, 1] beyond the second.
+std::array<double, 4> spline_weights(double t) {
+  const double s = 1.0 - t;
+  return {s * s * s / 6.0, 2.0 / 3.0 + t * t * (0.5 * t - 1.0), 2.0 / 3.0 + s * s * (0.5 * s - 1.0),
+          t * t * t / 6.0};
+}
+
 std::int32_t cell_of(std::int32_t line) {
   return line >= 0 ? line / kReliefCell : -((-line + kReliefCell - 1) / kReliefCell);
 }
@@ -20,9 +28,9 @@ std::int32_t cell_of(std::int32_t line) {
 class Lines {
  public:
   Lines(const std::vector<ReliefPlace>& places, int axis) : places_(places) {
-    const auto of_axis = [axis](const ReliefPlace& p) { return p.axis == axis; };
-    const auto first = std::find_if(places.begin(), places.end(), of_axis);
-    const auto end = std::find_if_not(first, places.end(), of_axis);
+    const auto on_axis = [axis](const ReliefPlace& p) { return p.axis == axis; };
+    const auto first = std::find_if(places.begin(), places.end(), on_axis);
+    const auto end = std::find_if_not(first, places.end(), on_axis);
     begin_ = static_cast<std::uint32_t>(first - places.begin());
     if (first == end) return;
     low_v_ = first->v, high_v_ = (end - 1)->v;
@@ -172,23 +180,23 @@ ReliefSheet middle_plane(const Lines& lines, const Sheet& sheet, std::int32_t u0
   float u = 0, v = 0, w = 0, n = 0;
   for_each([&](const ReliefPlace& p, float at_u, float at_v, float at_w) {
     u += at_u, v += at_v, w += at_w;
-    plane.of_u += slope(p, 1, 0), plane.of_v += slope(p, 0, 1);
+    plane.slope_u += slope(p, 1, 0), plane.slope_v += slope(p, 0, 1);
     n += 1.0f;
   });
-  plane.of_u /= n, plane.of_v /= n;
-  plane.at = w / n - plane.of_u * (u / n) - plane.of_v * (v / n);
+  plane.slope_u /= n, plane.slope_v /= n;
+  plane.at = w / n - plane.slope_u * (u / n) - plane.slope_v * (v / n);
   float off = 0.0f;
   for_each([&](const ReliefPlace&, float at_u, float at_v, float at_w) {
-    off = std::max(off, std::abs(at_w - (plane.at + plane.of_u * at_u + plane.of_v * at_v)));
+    off = std::max(off, std::abs(at_w - (plane.at + plane.slope_u * at_u + plane.slope_v * at_v)));
   });
-  const float steep = math::sqrt(1.0f + plane.of_u * plane.of_u + plane.of_v * plane.of_v);
+  const float steep = math::sqrt(1.0f + plane.slope_u * plane.slope_u + plane.slope_v * plane.slope_v);
   plane.farthest = off + (kNear + kFade) * steep;
   plane.inverse_fade = 1.0f / (kFade * steep);
   return plane;
 }
 
 float middle_value(const ReliefSheet& plane) {
-  return plane.at + 0.5f * static_cast<float>(kReliefCell) * (plane.of_u + plane.of_v);
+  return plane.at + 0.5f * static_cast<float>(kReliefCell) * (plane.slope_u + plane.slope_v);
 }
 
 // The cells that a line passes, along one of its two axes: one, or two where it lies on their border.
@@ -221,11 +229,49 @@ void add_cell(const Lines& lines, const FoundSheets& found, ReliefTiles& to) {
                     &b = to.sheets[static_cast<std::size_t>(second)];
   const bool first_is_upper = middle_value(a) > middle_value(b);
   to.tiles[found.slot] = -1 - static_cast<std::int32_t>(to.splits.size());
-  to.splits.push_back({0.5f * (a.at + b.at), 0.5f * (a.of_u + b.of_u), 0.5f * (a.of_v + b.of_v),
+  to.splits.push_back({0.5f * (a.at + b.at), 0.5f * (a.slope_u + b.slope_u), 0.5f * (a.slope_v + b.slope_v),
                        first_is_upper ? second : first, first_is_upper ? first : second});
 }
 
 }  // namespace
+
+void ReliefShares::add(const Vec3f& p, std::vector<std::uint32_t>& places, std::vector<float>& shares) const {
+  TiledPoint point;
+  if (!find_in_tiles(tiles_, {p.x * inverse_spacing_, p.y * inverse_spacing_, p.z * inverse_spacing_}, point))
+    return;
+  const std::size_t begin = shares.size();
+  double total = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (point.tiles[a] == 0) continue;
+    total += add_tile(static_cast<std::size_t>(point.tiles[a]), point.u(a), point.v(a), places, shares);
+  }
+  if (!(total > 0.0)) {
+    places.resize(begin), shares.resize(begin);
+    return;
+  }
+  for (std::size_t i = begin; i < shares.size(); ++i) shares[i] = static_cast<float>(shares[i] / total);
+}
+
+double ReliefShares::add_tile(std::size_t tile, double u, double v, std::vector<std::uint32_t>& places,
+                              std::vector<float>& shares) const {
+  const int i = std::min(static_cast<int>(u), kReliefCell - 1),
+            j = std::min(static_cast<int>(v), kReliefCell - 1);
+  const std::array<double, 4> wu = spline_weights(u - i), wv = spline_weights(v - j);
+  double total = 0.0;
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      const std::size_t at =
+          (static_cast<std::size_t>(j) + row) * kReliefTileSide + static_cast<std::size_t>(i) + column;
+      const std::uint32_t number = tiles_.places[tile * kReliefTileSize + at];
+      if (number == kNoPlace) continue;
+      const double share = wu[column] * wv[row] * places_[number].weight;
+      places.push_back(number);
+      shares.push_back(static_cast<float>(share));
+      total += share;
+    }
+  }
+  return total;
+}
 
 bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, TiledPoint& point) {
   std::array<std::int64_t, 3> cell;
@@ -240,7 +286,7 @@ bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, Ti
     std::int32_t tile = tiles.tiles[3 * static_cast<std::size_t>(point.cell) + a];
     if (tile < 0) {
       const ReliefSplit& s = tiles.splits[static_cast<std::size_t>(-1 - tile)];
-      tile = point.at[a] > s.at + s.of_u * point.u(a) + s.of_v * point.v(a) ? s.upper : s.lower;
+      tile = point.at[a] > s.at + s.slope_u * point.u(a) + s.slope_v * point.v(a) ? s.upper : s.lower;
     }
     point.tiles[a] = tile;
   }
@@ -305,13 +351,14 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
           static_cast<std::int32_t>(key % made.count[0]) + made.low[0],
           static_cast<std::int32_t>(key / made.count[0] % made.count[1]) + made.low[1],
           static_cast<std::int32_t>(key / (std::int64_t{made.count[0]} * made.count[1])) + made.low[2]};
-      FoundSheets& of_cell = found[static_cast<std::size_t>(i)];
-      of_cell.slot = 3 * static_cast<std::size_t>(key) + a;
-      of_cell.corner = {cell[au] * kReliefCell, cell[av] * kReliefCell, cell[a] * kReliefCell};
-      of_cell.sheets = CellSheets(lines, of_cell.corner[0], of_cell.corner[1], of_cell.corner[2]).find();
+      FoundSheets& found_cell = found[static_cast<std::size_t>(i)];
+      found_cell.slot = 3 * static_cast<std::size_t>(key) + a;
+      found_cell.corner = {cell[au] * kReliefCell, cell[av] * kReliefCell, cell[a] * kReliefCell};
+      found_cell.sheets =
+          CellSheets(lines, found_cell.corner[0], found_cell.corner[1], found_cell.corner[2]).find();
     });
-    for (const FoundSheets& of_cell : found) {
-      if (!of_cell.sheets.empty()) add_cell(lines, of_cell, made);
+    for (const FoundSheets& found_cell : found) {
+      if (!found_cell.sheets.empty()) add_cell(lines, found_cell, made);
     }
   }
   return made;

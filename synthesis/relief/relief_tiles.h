@@ -4,7 +4,7 @@
 // on the lines in and next to the cell that belong to one sheet of the surface. Where two sheets of one axis
 // pass through a cell, as at a thin rim, a plane between them tells which of two tiles a point belongs to.
 // The projection of a point far from the surface may miss the sheet; then the heights of the tile are not its
-// own.
+// own. ReliefShares says what a point takes from the places around it, for those who choose heights.
 #pragma once
 
 #include <array>
@@ -23,18 +23,18 @@ inline constexpr int kReliefTileSize = kReliefTileSide * kReliefTileSide;
 inline constexpr double kMostReliefCells = 0x1p24;
 inline constexpr std::uint32_t kNoPlace = 0xffffffffu;
 
-// Two tiles of one axis and cell. A point belongs to `upper` where w > at + of_u u + of_v v, in spacings from
-// the corner of the cell.
+// Two tiles of one axis and cell. A point belongs to `upper` where w > at + slope_u u + slope_v v, in
+// spacings from the corner of the cell.
 struct ReliefSplit {
-  float at, of_u, of_v;
+  float at, slope_u, slope_v;
   std::int32_t lower, upper;
 };
 
 // Where the heights of a tile are those of points: in full within farthest - 1 / inverse_fade of the plane
-// w = at + of_u u + of_v v, along the axis, and nowhere from `farthest` on. In spacings from the corner of
-// the cell.
+// w = at + slope_u u + slope_v v, along the axis, and nowhere from `farthest` on. In spacings from the corner
+// of the cell.
 struct ReliefSheet {
-  float at, of_u, of_v;
+  float at, slope_u, slope_v;
   float farthest, inverse_fade;
 };
 
@@ -68,5 +68,26 @@ bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, Ti
 // Expects places in the order of find_relief_places(). Throws InputError, which begins with `where`, where
 // the box of the places has more than kMostReliefCells.
 ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where);
+
+// A point of the lattice takes shares[k] of the height at places[k]. The shares sum to 1, as height_at()
+// (relief_noise.h) blends heights on smooth ground; at folds it weighs maps by their reach, too.
+class ReliefShares {
+ public:
+  // Expects places in the order of find_relief_places() and their tiles, which must outlive this, and their
+  // spacing in length units.
+  ReliefShares(const std::vector<ReliefPlace>& places, const ReliefTiles& tiles, double spacing)
+      : places_(places), tiles_(tiles), inverse_spacing_(1.0 / spacing) {}
+
+  // Appends what a point, in length units, takes. Appends nothing where no place has a weight.
+  void add(const Vec3f& p, std::vector<std::uint32_t>& places, std::vector<float>& shares) const;
+
+ private:
+  double add_tile(std::size_t tile, double u, double v, std::vector<std::uint32_t>& places,
+                  std::vector<float>& shares) const;
+
+  const std::vector<ReliefPlace>& places_;
+  const ReliefTiles& tiles_;
+  double inverse_spacing_;
+};
 
 }  // namespace astrolith

@@ -1,15 +1,26 @@
 // Heights are coefficients of a blend (relief_layer.h), which is smoother than they are. Here coefficients
-// become the values of the blend at the places, and back.
+// become the values of the blend at the places, and back. Where a body is thin, heights from elsewhere would
+// cut it or close a gap: the room of a place is how far the surface may move there without meeting itself.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "numerics/interval.h"
-#include "synthesis/relief/relief_shares.h"
+#include "synthesis/body/body_ground.h"
 #include "synthesis/relief/relief_smoothing.h"
+#include "synthesis/relief/relief_tiles.h"
 
 namespace astrolith {
+
+// Brings heights at places as near to `own` ones as the bare body needs there. A place has room below to the
+// depth d if at each depth d' up to d the body is solid and s at least d' / 2, and room above likewise in
+// empty space. Rooms are looked for up to R, three times the largest change D of any height. With the room R
+// on both sides a height stays; with less, r on one of them, it moves by D u^2 at most, where
+// u = max(r / R - .3, 0) / .7. `heights` and `own` are in the order of the points, and `scale` makes them
+// lengths in the unit of the points.
+void keep_room(const BodyGround& body, const ReliefPoints& points, double scale,
+               const std::vector<double>& own, std::vector<double>& heights);
 
 class ReliefValues {
  public:

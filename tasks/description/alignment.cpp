@@ -142,11 +142,11 @@ class Aligner {
 
 RigidMotion align_surface(const TriangleMesh& a, const SurfaceTree& tree_of_a, const TriangleMesh& b,
                           std::uint64_t seed, const Progress& progress) {
-  const std::vector<Vec3d> of_a = sample_surface(a, kAlignmentSamples, seed).points;
-  const std::vector<Vec3d> of_b = sample_surface(b, kAlignmentSamples, seed).points;
-  Aligner aligner(tree_of_a, of_b, progress);
+  const std::vector<Vec3d> points_a = sample_surface(a, kAlignmentSamples, seed).points;
+  const std::vector<Vec3d> points_b = sample_surface(b, kAlignmentSamples, seed).points;
+  Aligner aligner(tree_of_a, points_b, progress);
   Placed best = aligner.improved({}, kFirstSteps);
-  const PrincipalFrame frame_of_a = frame_of(of_a), frame_of_b = frame_of(of_b);
+  const PrincipalFrame frame_of_a = frame_of(points_a), frame_of_b = frame_of(points_b);
   for (std::size_t attitude = 0; attitude < 4; ++attitude) {
     const Placed tried = aligner.improved(between(frame_of_b, frame_of_a, attitude), kFirstSteps);
     if (tried.distance < best.distance) best = tried;

@@ -1,26 +1,69 @@
-#include "tasks/description/classify.h"
+#include "tasks/description/description_jobs.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "descriptor/classification/class_folders.h"
 #include "descriptor/classification/classifier_file.h"
-#include "descriptor/classification/cross_validation.h"
+#include "descriptor/classification/evaluation.h"
 #include "descriptor/classification/feature_table.h"
+#include "descriptor/classification/retrieval.h"
+#include "descriptor/classification/shape_features.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "tasks/description/evaluation_json.h"
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/mesh_repair.h"
 
 namespace astrolith {
 namespace {
+
+// The recall at which each number of a "precision_at_recall" stands.
+nlohmann::ordered_json recall_levels() {
+  nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+  for (int k = 0; k < kRecallLevels; ++k) levels.push_back(static_cast<double>(k) / (kRecallLevels - 1));
+  return levels;
+}
+
+nlohmann::ordered_json to_json(const FeatureOptions& options) {
+  nlohmann::ordered_json json{{"kind", name_of(options.kind)}};
+  if (options.kind == FeatureKind::shapedna) {
+    json["eigenvalues"] = options.eigenvalues;
+  } else {
+    json["bins"] = options.bins;
+  }
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Evaluation& evaluation, const std::vector<std::string>& classes) {
+  nlohmann::ordered_json json{{"shapes", evaluation.shapes},
+                              {"accuracy", evaluation.accuracy},
+                              {"mean_average_precision", evaluation.mean_average_precision},
+                              {"classes", nlohmann::ordered_json::array()},
+                              {"confusion", evaluation.confusion}};  // [true][called], classes in their order
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    const ClassScore& score = evaluation.classes[c];
+    json["classes"].push_back({{"name", classes[c]},
+                               {"shapes", score.shapes},
+                               {"precision", score.precision},
+                               {"recall", score.recall},
+                               {"average_precision", score.ranking.average_precision},
+                               {"precision_at_recall", score.ranking.curve}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Retrieval& retrieval) {
+  return {{"mean_average_precision", retrieval.mean_average_precision},
+          {"nearest_accuracy", retrieval.nearest_accuracy},
+          {"precision_at_recall", retrieval.curve},
+          {"recall_levels", recall_levels()}};
+}
 
 namespace fs = std::filesystem;
 

@@ -1,4 +1,4 @@
-#include "tasks/description/compare.h"
+#include "tasks/description/description_jobs.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +14,10 @@
 #include "numerics/length_unit.h"
 #include "tasks/description/comparison.h"
 #include "tasks/description/shape_options.h"
-#include "tasks/description/surface_options.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/job/job.h"
-#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 #include "tasks/repair/mesh_unit.h"
 #include "tasks/repair/shape_repair.h"
 
@@ -109,18 +108,18 @@ void say_factor(const Job& job, const CompareArguments& arguments, const Triangl
 // one is not known.
 std::string one_unit(const Job& job, const CompareArguments& arguments, TriangleMesh& b) {
   const UnitChoice choice{arguments.unit, ""};
-  const std::string of_a = unit_of_mesh(job, arguments.a, choice, {}).name;
-  const std::string of_b = unit_of_mesh(job, arguments.b, choice, {}).name;
-  if (of_a.empty() || of_b.empty() || of_a == of_b) return of_a;
-  if (!has_known_length(of_a) || !has_known_length(of_b)) {
-    job.say(fmt::format("note: {}: is in {}, and {} in {}; nothing was scaled", arguments.b, of_b,
-                        arguments.a, of_a));
-    return of_a;
+  const std::string unit_a = unit_of_mesh(job, arguments.a, choice, {}).name;
+  const std::string unit_b = unit_of_mesh(job, arguments.b, choice, {}).name;
+  if (unit_a.empty() || unit_b.empty() || unit_a == unit_b) return unit_a;
+  if (!has_known_length(unit_a) || !has_known_length(unit_b)) {
+    job.say(fmt::format("note: {}: is in {}, and {} in {}; nothing was scaled", arguments.b, unit_b,
+                        arguments.a, unit_a));
+    return unit_a;
   }
-  const double ratio = metres_of(of_b) / metres_of(of_a);
+  const double ratio = metres_of(unit_b) / metres_of(unit_a);
   for (Vec3d& vertex : b.vertices) vertex = ratio * vertex;
-  job.say(fmt::format("{}: from {} to {}, the unit of {}", arguments.b, of_b, of_a, arguments.a));
-  return of_a;
+  job.say(fmt::format("{}: from {} to {}, the unit of {}", arguments.b, unit_b, unit_a, arguments.a));
+  return unit_a;
 }
 
 void run_compare(Job& job, const CompareArguments& arguments) {

@@ -1,7 +1,7 @@
 #include "tasks/description/comparison.h"
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/surface/evened_similarity.h"
+#include "descriptor/surface/evened_surface.h"
 #include "geometry/surface/surface_distance.h"
 #include "numerics/errors.h"
 #include "tasks/description/alignment.h"

@@ -1,4 +1,4 @@
-#include "tasks/description/describe.h"
+#include "tasks/description/description_jobs.h"
 
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,6 @@
 #include "numerics/files/output_file.h"
 #include "tasks/description/describe_file.h"
 #include "tasks/description/shape_options.h"
-#include "tasks/description/surface_options.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/job/device_option.h"
 #include "tasks/job/job.h"

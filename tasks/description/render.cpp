@@ -1,4 +1,4 @@
-#include "tasks/description/render.h"
+#include "tasks/description/description_jobs.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
-#include "geometry/orient_faces.h"
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"

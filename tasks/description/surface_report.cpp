@@ -161,7 +161,7 @@ void write_surface_table(const SurfaceStatistics& surface, const std::filesystem
   text += "\n";
   for (std::size_t i = 0; i < surface.places.size(); ++i) {
     const Vec3d& p = surface.places[i];
-    text += fmt::format("{:.9g},{:.9g},{:.9g},{}", p.x, p.y, p.z, surface.regions.of_place[i]);
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{}", p.x, p.y, p.z, surface.regions.region_index[i]);
     for (const LocalStatistic& statistic : surface.local) {
       text += fmt::format(",{:.9g}", statistic.values[i]);
     }

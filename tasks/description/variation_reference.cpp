@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/surface/evened_similarity.h"
+#include "descriptor/surface/evened_surface.h"
 
 namespace astrolith {
 namespace {

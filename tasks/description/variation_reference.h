@@ -5,7 +5,7 @@
 #include <string>
 
 #include "geometry/triangle_mesh.h"
-#include "synthesis/finish/variation_search.h"
+#include "synthesis/finish/recipe_variation.h"
 
 namespace astrolith {
 

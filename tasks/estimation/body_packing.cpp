@@ -1,8 +1,8 @@
-#include "tasks/estimation/body_packing.h"
+#include "tasks/estimation/fit_shape.h"
 
 #include <fmt/format.h>
 
-#include "estimation/shape/packing/packing_table.h"
+#include "estimation/shape/packing/sphere_packing.h"
 
 namespace astrolith {
 

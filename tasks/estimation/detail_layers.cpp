@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "estimation/shape/details/detailed_check.h"
+#include "estimation/shape/details/details_fit.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
 #include "numerics/length_unit.h"

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/missing_ground.h"
+#include "estimation/gabor/photo_fit.h"
 #include "estimation/gabor/spectrum/photo_period.h"
 #include "numerics/errors.h"
 #include "numerics/files/npy_file.h"
@@ -19,7 +19,6 @@
 #include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
-#include "tasks/estimation/exemplar_recipe.h"
 #include "tasks/estimation/photo_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"

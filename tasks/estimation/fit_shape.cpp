@@ -4,24 +4,24 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "estimation/shape/details/imaged_ground.h"
+#include "estimation/shape/details/realism_check.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
-#include "estimation/shape/target/parts_and_handles.h"
+#include "estimation/shape/target/surface_components.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "numerics/files/output_folder.h"
-#include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
+#include "tasks/description/surface_report.h"
 #include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/fit_checkpoint.h"
-#include "tasks/estimation/fit_realism.h"
 #include "tasks/estimation/fit_time_limit.h"
 #include "tasks/estimation/relief_mending.h"
 #include "tasks/estimation/relief_size.h"
@@ -31,23 +31,52 @@
 #include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
-#include "tasks/repair/unit_question.h"
+#include "tasks/repair/mesh_unit.h"
 
 namespace astrolith {
 namespace {
 
-// A place near the middle of a mesh that lies many of its lengths from the origin of its frame, or that
-// origin: float32 coordinates would have too few digits for such a body.
-Vec3d local_origin(const TriangleMesh& mesh) {
-  constexpr double kFar = 8.0;  // lengths
-  const Box box = mesh.bounds();
-  const double length = box.diagonal();
-  if (!(norm(box.center()) > kFar * length)) return {};
-  double steps = 1.0;  // in a unit: a power of ten, so that the numbers are short
-  while (steps * length < 1.0) steps *= 10.0;
-  const auto rounded = [&](double c) { return std::round(steps * c) / steps + 0.0; };  // no -0
-  const Vec3d center = box.center();
-  return {rounded(center.x), rounded(center.y), rounded(center.z)};
+struct JudgedFit {
+  std::optional<FitRealism> realism;  // none where progress asked to stop, or with the remark
+  std::string remark;                 // why the surface could not be judged
+};
+
+LengthWords lengths_of(const FitRealism& realism, const TargetBody& target, const std::string& unit) {
+  LengthWords lengths = words_for_lengths(unit, 3.0 * realism.verdict.edge * target.diagonal);
+  lengths.scale *= target.diagonal;
+  return lengths;
+}
+
+// check_realism() for a whole fit, of which the verdict is only a part: what hinders it is no error.
+JudgedFit judge_fit(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
+                    const Progress& progress) {
+  try {
+    return {check_realism(target, recipe, seeds, seed, progress), ""};
+  } catch (const InputError& e) {
+    return {std::nullopt, e.what()};
+  } catch (const WorkError&) {
+    return {};
+  }
+}
+
+// The verdict in the unit of the target's file, "m" or "km", with the p and the largest distance of each
+// seed.
+nlohmann::ordered_json fit_realism_json(const FitRealism& realism, const TargetBody& target,
+                                        const std::string& unit) {
+  RealismVerdict verdict = realism.verdict;
+  verdict.edge *= target.diagonal;
+  nlohmann::ordered_json json = realism_json(verdict, words_for_lengths(unit, 3.0 * verdict.edge));
+  nlohmann::ordered_json seeds = nlohmann::ordered_json::array();
+  for (const RealismVerdict& verdict_of_one : realism.verdict_of_seed) {
+    seeds.push_back({{"p", verdict_of_one.p}, {"largest_distance", verdict_of_one.largest_distance}});
+  }
+  json["noise_seeds"] = seeds;
+  return json;
+}
+
+// The verdict for a report, which refers to `realism`.
+ReportedRealism reported(const FitRealism& realism, const TargetBody& target, const std::string& unit) {
+  return {realism.verdict, realism.target, realism.mesh, realism.fit, lengths_of(realism, target, unit)};
 }
 
 // The recipe of a fitted body, without layers and without the figures that the fit achieved. With --bytes it
@@ -268,35 +297,6 @@ Progress heeding_a_stop(const Job& job, Progress progress) {
   };
 }
 
-// The target of a mesh. Says what was mended.
-TargetBody target_of(Job& job, const FitArguments& arguments, TriangleMesh mesh, const Progress& preparing) {
-  const ShapeRepair& repair = arguments.repair;
-  RepairedTarget made = repaired_target(std::move(mesh), arguments.mesh, arguments.unit, repair.strict,
-                                        repair.options(), job.progress("repair"), preparing);
-  for (const std::string& words : made.words) job.say(arguments.mesh + ": " + words);
-  for (const std::string& remark : made.target.remarks) job.say(arguments.mesh + ": " + remark);
-  if (!made.figures.is_null()) job.summary["repair"] = made.figures;
-  return std::move(made.target);
-}
-
-// The mesh that the arguments name or hold, and the hash that a checkpoint knows it by.
-TriangleMesh read_target_mesh(FitArguments& arguments) {
-  if (arguments.in_memory) {
-    Sha256 hash;
-    hash.update(arguments.in_memory->vertices.data(), arguments.in_memory->vertices.size() * sizeof(Vec3d));
-    hash.update(arguments.in_memory->triangles.data(),
-                arguments.in_memory->triangles.size() * sizeof(Triangle));
-    arguments.mesh_sha256 = hash.hex();
-    return *arguments.in_memory;
-  }
-  arguments.mesh_sha256 = sha256_of_file(arguments.mesh);
-  TriangleMesh mesh = arguments.repair.read(arguments.mesh);
-  if (sha256_of_file(arguments.mesh) != arguments.mesh_sha256) {
-    throw InputError(arguments.mesh + ": changed while it was read; run again when it is whole");
-  }
-  return mesh;
-}
-
 // A result that cannot be written should be refused before minutes of work.
 void require_outputs(const FitArguments& arguments) {
   if (!arguments.output.empty()) {
@@ -335,7 +335,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
     job.summary["origin"] = {origin.x, origin.y, origin.z};
   }
   const TargetBody target =
-      target_of(job, arguments, std::move(mesh), heeding_a_stop(job, limit.preparation(kReadShare)));
+      repaired_target(job, arguments, std::move(mesh), heeding_a_stop(job, limit.preparation(kReadShare)));
   question_unit(job, arguments, target);
   FittedShape result;
   job.summary["length_unit"] = arguments.unit;

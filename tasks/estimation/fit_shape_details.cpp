@@ -1,4 +1,4 @@
-#include "tasks/estimation/fit_shape_details.h"
+#include "tasks/estimation/fit_shape.h"
 
 #include <fmt/format.h>
 

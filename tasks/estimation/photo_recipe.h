@@ -1,6 +1,8 @@
-// The recipe of a photo's Gabor layers, and the figures of the fit.
+// The recipe of a photo's Gabor layers or exemplar layer, the PNG that such a layer names, and the figures of
+// the fit.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -25,5 +27,14 @@ Recipe photo_recipe(const PhotoFit& photo, const PhotoRecipeOptions& options);
 // The figures of the fit, for summaries.
 nlohmann::ordered_json photo_figures(const PhotoFit& photo);
 nlohmann::ordered_json gaussianity_figures(const Gaussianity& gaussianity);
+
+// The recipe with the layer in its physical scale, not yet with its image.
+Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options);
+
+// The PNG beside a recipe: "rock.json" has "rock_exemplar.png".
+std::filesystem::path exemplar_image_of(const std::filesystem::path& recipe);
+
+// Writes the PNG of the recipe's only layer, an exemplar, and then the recipe that names it.
+void write_exemplar_recipe(Recipe recipe, const std::filesystem::path& file);
 
 }  // namespace astrolith

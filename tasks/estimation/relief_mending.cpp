@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/shape/relief/relief_softening.h"
-#include "estimation/shape/target/parts_and_handles.h"
+#include "estimation/shape/relief/relief_fit.h"
 #include "estimation/shape/target/surface_components.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/shape_recipe.h"

@@ -1,26 +1,22 @@
-// The body to fit of a mesh that may need a repair.
+// The body that a job fits: its mesh is read, repaired where needed, and prepared.
 #pragma once
-
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "estimation/shape/target/target_body.h"
 #include "numerics/progress.h"
-#include "tasks/repair/mesh_repair.h"
+#include "tasks/estimation/fit_shape.h"
 
 namespace astrolith {
 
-struct RepairedTarget {
-  TargetBody target;
-  std::vector<std::string> words;  // what the repair did, in lengths of `unit`
-  nlohmann::ordered_json figures;  // the fields repair.*; null where nothing was done
-};
+// The mesh that the arguments name or hold. Sets the hash that a checkpoint knows it by.
+TriangleMesh read_target_mesh(FitArguments& arguments);
 
-// Repairs the mesh, unless `strict`, and prepares it. Where it then passes through itself, it is repaired
-// once more. Throws what repair_mesh and prepare_target throw.
-RepairedTarget repaired_target(TriangleMesh mesh, const std::string& name, const std::string& unit,
-                               bool strict, RepairOptions options, const Progress& repairing,
-                               const Progress& preparing);
+// A place near the middle of a mesh that lies many of its lengths from the origin of its frame, or that
+// origin: float32 coordinates would have too few digits for such a body.
+Vec3d local_origin(const TriangleMesh& mesh);
+
+// Repairs the mesh, unless the job is strict, and prepares it. Where it then passes through itself, it is
+// repaired once more. Says what was mended. Throws what repair_mesh and prepare_target throw.
+TargetBody repaired_target(Job& job, const FitArguments& arguments, TriangleMesh mesh,
+                           const Progress& preparing);
 
 }  // namespace astrolith

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "estimation/shape/details/detailed_check.h"
+#include "estimation/shape/details/details_fit.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"

@@ -6,14 +6,13 @@
 #include <string_view>
 #include <utility>
 
-#include "estimation/gabor/exemplar/completed_image.h"
 #include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "estimation/gabor/image/missing_ground.h"
 #include "numerics/errors.h"
-#include "numerics/progress_stretch.h"
+#include "numerics/progress.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
-#include "tasks/estimation/exemplar_recipe.h"
+#include "tasks/estimation/photo_recipe.h"
 
 namespace astrolith {
 namespace {

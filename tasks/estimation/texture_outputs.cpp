@@ -1,4 +1,4 @@
-#include "tasks/estimation/texture_outputs.h"
+#include "tasks/estimation/fit_gabor.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
-#include "estimation/gabor/texture_page.h"
 #include "estimation/gabor/texture_report.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/exemplar/plane_exemplar.h"

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 
 namespace astrolith {
 namespace {

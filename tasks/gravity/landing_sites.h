@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/surface/ground_axes.h"
+#include "geometry/surface/ground_plane.h"
 #include "numerics/progress.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"

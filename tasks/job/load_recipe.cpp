@@ -14,7 +14,6 @@
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/picture/image_file.h"
-#include "synthesis/picture/png_reader.h"
 #include "tasks/job/body_library.h"
 
 namespace astrolith {

@@ -1,16 +1,23 @@
-// Numbers with their nouns and units, as messages of programs state them.
+// Numbers with their nouns and units, as messages of programs state them, and a job's figures as text.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
 #include "numerics/vec3.h"
 
 namespace astrolith {
+
+// The document with indents and a line break at its end. Bytes that are no UTF-8, as names of files may have,
+// are replaced.
+inline std::string json_text(const nlohmann::ordered_json& document) {
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
 
 // "1 layer", "3 layers".
 inline std::string counted(std::size_t count, std::string_view noun) {
@@ -37,9 +44,9 @@ inline std::string byte_words(double bytes) {
 }
 
 // "about 6 s on idle cores, 11 s of the processor".
-inline std::string seconds_words(double on_idle_cores, double of_processor) {
+inline std::string seconds_words(double on_idle_cores, double processor_seconds) {
   return fmt::format("about {:.0f} s on idle cores, {:.0f} s of the processor", std::ceil(on_idle_cores),
-                     std::ceil(of_processor));
+                     std::ceil(processor_seconds));
 }
 
 // "0.561 x 0.302 x 0.246 km": the sides of a box, in `unit`.

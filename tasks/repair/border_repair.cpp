@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "geometry/mesh_edges.h"
-#include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 #include "numerics/box_tree.h"
 #include "numerics/errors.h"
-#include "tasks/repair/border_repair_internal.h"
+#include "tasks/repair/mesh_repair_internal.h"
 
 namespace astrolith {
 namespace {

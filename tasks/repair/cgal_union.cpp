@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/mesh_parts.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "tasks/repair/cgal_guard_internal.h"
@@ -66,7 +65,7 @@ struct Solid {
 
 // The solid that a hollow lies in: the smallest that holds it. `parts` has the largest first. None where the
 // hollow reaches out of all of them.
-std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<MeshPart>& parts,
+std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<SurfacePart>& parts,
                                     PartNesting& nesting) {
   for (std::size_t i = hollow; i-- > 0;) {
     if (parts[i].volume > 0.0 && nesting.lies_inside(parts[hollow], parts[i])) return i;
@@ -76,8 +75,8 @@ std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<MeshPa
 
 // All solids, the largest first. A cavity, whose volume is negative, is a hollow.
 std::vector<Solid> solids_of(const TriangleMesh& mesh) {
-  std::vector<MeshPart> parts = parts_of(mesh, triangle_components(mesh));
-  std::stable_sort(parts.begin(), parts.end(), [](const MeshPart& a, const MeshPart& b) {
+  std::vector<SurfacePart> parts = parts_of(mesh, triangle_components(mesh));
+  std::stable_sort(parts.begin(), parts.end(), [](const SurfacePart& a, const SurfacePart& b) {
     return std::abs(a.volume) > std::abs(b.volume);
   });
   PartNesting nesting;

@@ -3,7 +3,7 @@
 
 #include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
-#include "tasks/repair/fin_repair_internal.h"
+#include "tasks/repair/mesh_repair_internal.h"
 
 namespace astrolith {
 namespace {

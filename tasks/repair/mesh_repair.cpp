@@ -13,18 +13,13 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/orient_faces.h"
 #include "geometry/points/nearest_neighbours.h"
 #include "geometry/surface/surface_tree.h"
-#include "geometry/weld.h"
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "tasks/repair/border_repair_internal.h"
 #include "tasks/repair/cgal_repair_internal.h"
-#include "tasks/repair/fin_repair_internal.h"
-#include "tasks/repair/repair_words.h"
-#include "tasks/repair/scene_bodies_internal.h"
+#include "tasks/repair/mesh_repair_internal.h"
 
 namespace astrolith {
 namespace {

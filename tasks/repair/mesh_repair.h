@@ -2,7 +2,7 @@
 // what was done.
 //
 //   const MeshRepair repair = repair_mesh(read_mesh("eros.obj"), "eros.obj", {});
-//   if (repair.changed) std::cerr << repair_words(repair, "km") << "\n";   // tasks/repair/repair_words.h
+//   if (repair.changed) std::cerr << repair_words(repair, "km") << "\n";
 //
 // The steps, each of which leaves alone what needs no repair:
 //   1. vertices at one place become one, repeated and empty facets go, facets are wound alike and outwards;
@@ -20,6 +20,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "geometry/triangle_mesh.h"
@@ -97,5 +98,17 @@ MeshRepair mend_surface(TriangleMesh mesh, const std::string& name, RepairOption
 // Reads a mesh, or points with normals, and mends it. `remark` says what was done or that the mesh is open,
 // with the file's name, and is empty otherwise. Throws InputError as read_mesh does.
 TriangleMesh read_mended_surface(const std::filesystem::path& file, std::string& remark);
+
+// "stitched 412 edges, filled 3 holes (largest 2.1 % of the surface), nothing moved by more than 0.3 m". An
+// empty `unit` gives the distance in percent of the diagonal. Empty where nothing was done and the mesh is
+// one part.
+std::string repair_words(const MeshRepair& repair, const std::string& unit,
+                         const RepairOptions& options = {});
+
+// Whether the mesh has several parts, of which the words say how they lie.
+bool says_of_parts(const MeshRepair& repair);
+
+// The fields repair.* of apps/summary_fields.json.
+nlohmann::ordered_json repair_json(const MeshRepair& repair);
 
 }  // namespace astrolith

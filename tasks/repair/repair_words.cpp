@@ -1,4 +1,4 @@
-#include "tasks/repair/repair_words.h"
+#include "tasks/repair/mesh_repair.h"
 
 #include <fmt/format.h>
 

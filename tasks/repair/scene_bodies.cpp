@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "geometry/mesh_edges.h"
-#include "geometry/mesh_parts.h"
 #include "geometry/mesh_topology.h"
-#include "tasks/repair/scene_bodies_internal.h"
+#include "tasks/repair/mesh_repair_internal.h"
 
 namespace astrolith {
 namespace {
@@ -16,7 +15,7 @@ constexpr std::size_t kMostComponents = 64;
 
 // Sorts the components into bodies, and counts those that overlap or lie inside others in `scene`. (#parts)
 // the body of each, named by one of its components.
-std::vector<std::uint32_t> sorted_into_bodies(const std::vector<MeshPart>& parts, SceneBodies& scene) {
+std::vector<std::uint32_t> sorted_into_bodies(const std::vector<SurfacePart>& parts, SceneBodies& scene) {
   std::vector<std::uint32_t> by_volume(parts.size());
   std::iota(by_volume.begin(), by_volume.end(), std::uint32_t{0});
   std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -25,11 +24,11 @@ std::vector<std::uint32_t> sorted_into_bodies(const std::vector<MeshPart>& parts
   DisjointSets sets(parts.size());
   PartNesting nesting;
   for (std::size_t j = 1; j < by_volume.size(); ++j) {
-    const MeshPart& smaller = parts[by_volume[j]];
+    const SurfacePart& smaller = parts[by_volume[j]];
     bool overlaps = false, undecided = false;
     int around = 0;  // the winding number of all that lies around it
     for (std::size_t i = 0; i < std::min(j, kMostComponents); ++i) {
-      const MeshPart& larger = parts[by_volume[i]];
+      const SurfacePart& larger = parts[by_volume[i]];
       if (!boxes_touch(larger.box, smaller.box)) continue;
       const bool unknown = j >= kMostComponents || nesting.spent();
       undecided = undecided || unknown;
@@ -61,7 +60,7 @@ SceneBodies bodies_of_scene(TriangleMesh mesh) {
   SceneBodies scene;
   scene.largest = std::move(mesh);
   if (std::all_of(number.begin(), number.end(), [](std::uint32_t c) { return c == 0; })) return scene;
-  const std::vector<MeshPart> parts = parts_of(scene.largest, number);
+  const std::vector<SurfacePart> parts = parts_of(scene.largest, number);
   const std::vector<std::uint32_t> body = sorted_into_bodies(parts, scene);
   std::vector<double> volumes(parts.size(), 0.0);  // at the component that names the body
   double all = 0.0;

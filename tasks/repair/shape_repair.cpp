@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "tasks/repair/repair_words.h"
+#include "tasks/repair/mesh_repair.h"
 
 namespace astrolith {
 namespace {
@@ -19,11 +19,11 @@ TriangleMesh told(const Job& job, MeshRepair repair, const std::string& name, co
 
 }  // namespace
 
-void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
+void ShapeRepair::add_to(OptionTable& app, bool for_bodies) {
   const Option refuse =
       app.add_flag("--strict", strict,
-                   of_bodies ? "refuse a mesh that is not closed, in place of its repair"
-                             : "take a mesh as it is, in place of the repair of its cracks and small holes");
+                   for_bodies ? "refuse a mesh that is not closed, in place of its repair"
+                              : "take a mesh as it is, in place of the repair of its cracks and small holes");
   app.add_flag("--wrap", wrap,
                "where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of "
                "it, or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
@@ -33,7 +33,7 @@ void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
                "make one surface of parts that overlap or lie inside one another, so that no rock counts "
                "twice and no wall is buried; cavities stay")
       .excludes(refuse);
-  if (!of_bodies) return;
+  if (!for_bodies) return;
   app.add_flag("--all-parts", all_parts,
                "take all bodies of a file that holds several, in place of the largest")
       .excludes(refuse);

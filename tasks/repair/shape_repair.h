@@ -14,7 +14,7 @@ struct ShapeRepair {
   bool strict = false, wrap = false, unite = false, all_parts = false;
 
   // Programs of surfaces take all bodies of a scene: they have no --all-parts.
-  void add_to(OptionTable& app, bool of_bodies = true);
+  void add_to(OptionTable& app, bool for_bodies = true);
   RepairOptions options() const;
 
   // Reads a mesh. With --wrap also points: .xyz, or a file of points with normals.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "geometry/surface/footprint_planes.h"
 #include "geometry/surface/height_map.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -12,8 +11,8 @@
 #include "numerics/vec3_json.h"
 #include "synthesis/field/feature_list.h"
 #include "synthesis/picture/image_file.h"
-#include "tasks/job/json_text.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {

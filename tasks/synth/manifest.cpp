@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "numerics/errors.h"
-#include "numerics/files/append_line.h"
 #include "numerics/files/input_file.h"
+#include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 
 namespace astrolith {

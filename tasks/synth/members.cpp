@@ -19,7 +19,6 @@
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
-#include "numerics/own_loops.h"
 #include "numerics/parallel_for.h"
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"

@@ -12,7 +12,6 @@
 #include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
-#include "numerics/own_loops.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
 #include "synthesis/field/field_mesh.h"

@@ -11,7 +11,7 @@
 
 #include "estimation/gabor/gabor_fit.h"
 #include "estimation/gabor/pursuit/gabor_dictionary.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 
 namespace astrolith::testing {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/shape/details/details_fit.h"
-#include "estimation/shape/fit/global_parameter_search.h"
+#include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/packing/sphere_packing.h"
 #include "geometry/io/mesh_io.h"
 #include "recipe/recipe_json.h"

@@ -24,7 +24,6 @@
 #include "descriptor/surface/surface_statistics.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "geometry/surface/surface_tree.h"

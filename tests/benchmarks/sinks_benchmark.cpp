@@ -13,8 +13,8 @@
 #include "cuda/mesher/gpu_mesher.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "synthesis/field/field_mesh.h"
+#include "synthesis/mesh/even_mesh.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "synthesis/mesh/recorded_mesh.h"
 #include "tasks/job/load_recipe.h"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/largest_distance.h"
 #include "descriptor/shape_distribution.h"
+#include "descriptor/surflet_histogram.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "fuzzed_reader.h"
-#include "synthesis/picture/png_reader.h"
+#include "synthesis/picture/image_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace astrolith;

@@ -1,10 +1,8 @@
 #include <vector>
 
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/orient_faces.h"
-#include "geometry/triangle_quality.h"
+#include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "tests/support/meshes.h"

@@ -1,4 +1,4 @@
-#include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 
 #include <bit>
 #include <stdexcept>

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "geometry/mesh_measure.h"
-#include "gravity/coarse_surface.h"
 #include "gravity/polyhedron_gravity.h"
 #include "gravity/vertical_directions.h"
 #include "numerics/errors.h"

@@ -6,15 +6,12 @@
 #include <memory>
 
 #include "numerics/errors.h"
-#include "tasks/description/compare.h"
-#include "tasks/description/describe.h"
-#include "tasks/description/render.h"
+#include "tasks/description/description_jobs.h"
 #include "tasks/gravity/gravity_job.h"
 #include "tasks/synth/check_tiles.h"
 #include "tasks/synth/synth.h"
 #include "tests/support/scratch_folder.h"
 #ifdef ASTROLITH_WITH_ESTIMATION
-#include "tasks/description/classify.h"
 #include "tasks/estimation/fit_gabor.h"
 #include "tasks/estimation/fit_shape.h"
 #endif

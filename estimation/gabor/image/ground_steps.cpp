@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "estimation/gabor/image/ground_steps_internal.h"
+#include "estimation/gabor/image/raster_file_internal.h"
 #include "numerics/portable_angles.h"
 
 namespace astrolith {

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "estimation/gabor/image/height_unit_internal.h"
+#include "estimation/gabor/image/raster_file_internal.h"
 
 namespace astrolith {
 namespace {

@@ -14,11 +14,8 @@
 #include <tuple>
 #include <utility>
 
-#include "estimation/gabor/image/ground_steps_internal.h"
-#include "estimation/gabor/image/height_unit_internal.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/raster_file_internal.h"
-#include "estimation/gabor/image/tiff_tags_internal.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 

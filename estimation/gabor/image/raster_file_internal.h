@@ -1,22 +1,60 @@
 // Reads photos and rasters by GDAL: PNG, JPEG, WebP, TIFF and GeoTIFF, cubes of ISIS, images of the PDS and
-// others.
+// others. Its helpers read the unit of heights, the size of pixels on the ground, and tags of TIFF that GDAL
+// keeps to itself.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "estimation/gabor/image/height_map.h"
+#include "estimation/gabor/image/image_reader.h"
 #include "numerics/progress.h"
 
 class GDALDataset;
 class GDALRasterBand;
 
 namespace astrolith {
+
+// The steps of a pixel along a row and along a column, in metres on the ground.
+struct GroundStep {
+  double east = 0.0, north = 0.0;
+  double length() const { return std::sqrt(east * east + north * north); }
+};
+struct GroundSteps {
+  GroundStep column, row;
+  std::string source;         // StatedScale::pixel_source
+  bool like_degrees = false;  // as StatedScale
+  bool unknown = false;       // as StatedScale
+};
+
+// By the raster's transform and its spatial reference: a grid in degrees by the radius of its body, a
+// projected one by its unit of length, or on the ground in the middle of the map where the projection
+// stretches it. Unknown where PROJ lacks its data or cannot transform the middle. None where the file states
+// no size of pixels.
+std::optional<GroundSteps> ground_steps(GDALDataset& raster);
+
+struct TiffTags {
+  int orientation = 1;  // as EXIF counts it, 1 .. 8: where the first row and column of the picture stand
+  bool premultiplied = false;  // alpha is associated: colours are stored multiplied by it
+};
+
+// The tags of the first picture; those of a plain one for a file that is no TIFF. Throws InputError for a
+// TIFF that is damaged, and for a camera's raw file, whose first picture is a thumbnail.
+TiffTags read_tiff_tags(const std::filesystem::path& file);
+
+// The metres of a unit of length by its name, in any case; 0 for another unit. Words behind it that say from
+// where heights count are passed over: "metres above the ellipsoid", "m (MSL)".
+double metres_of_unit(std::string unit);
+
+// What the label of a PDS3 image states for a keyword, without quotes; empty where it does not. GDAL keeps
+// some keywords to itself.
+std::string value_in_label(const std::filesystem::path& file, std::string_view keyword);
 
 // Takes a row of pixels of 1 channel, or of 3: red, green and blue.
 using TakeRow = std::function<void(std::span<const double> row, int channels)>;

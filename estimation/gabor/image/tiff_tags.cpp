@@ -9,7 +9,7 @@
 #include <new>
 #include <string>
 
-#include "estimation/gabor/image/tiff_tags_internal.h"
+#include "estimation/gabor/image/raster_file_internal.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 
 namespace astrolith {
 namespace {

@@ -1,5 +1,8 @@
 // Fades out the borders of images that do not repeat. A Fourier transform takes an image for one period of an
 // endless pattern, so jumps from one border to the opposite one draw a cross over its spectrum.
+//
+// Moisan's periodic plus smooth decomposition serves instead where an image must keep its details at the
+// borders: the periodic component has these and no cross.
 #pragma once
 
 #include <vector>
@@ -7,6 +10,16 @@
 #include "estimation/gabor/image/grey_image.h"
 
 namespace astrolith {
+
+struct PeriodicDecomposition {
+  GreyImage periodic;  // same mean as the image
+  GreyImage smooth;    // zero mean; periodic + smooth = image
+};
+
+// Solves (periodic Laplacian of smooth) = v, where v holds the jumps between opposite borders and is zero
+// inside (Moisan, Periodic plus smooth image decomposition, JMIV 2011, eq. 11). Both sides of the image are
+// >= 2.
+PeriodicDecomposition decompose_periodic(const GreyImage& image);
 
 // Whether opposite borders continue each other along x, or along y. The bend of a column (or a row) is the
 // mean of its second differences, taken without signs. Borders continue each other if they bend about as much

@@ -9,7 +9,7 @@
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "numerics/errors.h"
-#include "numerics/progress_stretch.h"
+#include "numerics/progress.h"
 #include "numerics/sample_statistics.h"
 
 namespace astrolith {
@@ -18,7 +18,7 @@ namespace {
 constexpr double kAlike = 0.02;
 // Alike pixels differ by less than neighbouring ones, within what chance adds to noise; where a period is
 // there just twice, by much less: two hills of nearly one form differ by a fifth.
-constexpr double kOfNeighbours = 1.1, kOfNeighboursOnce = 0.125;
+constexpr double kMostDifference = 1.1, kMostDifferenceOnce = 0.125;  // of neighbouring pixels
 constexpr double kRounding = 1e-9;  // of the mean square: what the transforms leave
 
 // What all rows have together: the sums over the pixels of the products of values a distance apart, and of
@@ -76,7 +76,7 @@ int least_period(const std::vector<double>& differences, std::size_t n) {
       continue;
     const bool once = 2 * p >= differences.size();
     const double most =
-        std::min(kAlike * largest, (once ? kOfNeighboursOnce : kOfNeighbours) * differences[1]);
+        std::min(kAlike * largest, (once ? kMostDifferenceOnce : kMostDifference) * differences[1]);
     bool alike = true;
     for (std::size_t k = p; alike && k < differences.size(); k += p) alike = differences[k] <= most;
     if (alike) return static_cast<int>(p);

@@ -8,7 +8,7 @@
 
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/octaves.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "numerics/sample_statistics.h"
 
 namespace astrolith {

@@ -4,15 +4,24 @@
 // A histogram with few bins determines amplitudes and frequencies only loosely, and 34 parameters are many
 // for two thousand evaluations. The search therefore starts from a good candidate. For each noise alone, and
 // for each number of octaves, roughness.h gives the amplitude, frequency and gain that reproduce the target's
-// roughness over the base. The best of these noises is one of the optimiser's first candidates.
+// roughness over the base. The best of these noises is one of the optimiser's first candidates. The recipe of
+// base and details is measured by a mesh of it.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "estimation/optimize/evaluation_log.h"
 #include "estimation/shape/details/detail_fitness.h"
+#include "estimation/shape/fit/fit_check.h"
+#include "recipe/recipe.h"
 
 namespace astrolith {
+
+// Like check_fit, for a whole recipe. The recipe is in the frame and the unit of the target's file; the check
+// is in the target's frame.
+FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, int resolution, std::int64_t samples,
+                      std::uint64_t seed);
 
 struct DetailsFitOptions {
   OptimizerAlgorithm optimizer = OptimizerAlgorithm::pso;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/shape/target/parts_and_handles.h"
+#include "estimation/shape/target/surface_components.h"
 #include "numerics/reported_loop.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
@@ -37,9 +37,9 @@ TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, d
     mesh_field(field, field.bounds(), resolution, collector, at_beginning(progress));
     return std::move(collector.mesh);
   };
-  const auto of_first = static_cast<double>(std::max<std::size_t>(meshed(kFirst).triangles.size(), 1));
-  TriangleMesh mesh = meshed(
-      std::clamp(static_cast<int>(std::lround(kFirst * std::sqrt(triangles / of_first))), kLeast, kMost));
+  const auto first_triangles = static_cast<double>(std::max<std::size_t>(meshed(kFirst).triangles.size(), 1));
+  TriangleMesh mesh = meshed(std::clamp(
+      static_cast<int>(std::lround(kFirst * std::sqrt(triangles / first_triangles))), kLeast, kMost));
   for (Vec3d& p : mesh.vertices) p = (p - target.center) * (1.0 / target.diagonal);
   return mesh;
 }

@@ -5,10 +5,8 @@
 #include <vector>
 
 #include "estimation/gabor/gabor_fit.h"
-#include "estimation/gabor/image/detrend.h"
-#include "estimation/shape/details/probe_layout.h"
+#include "estimation/gabor/image/image_channels.h"
 #include "estimation/shape/details/surface_probe.h"
-#include "estimation/shape/model/isosurface_projection.h"
 #include "estimation/shape/model/metaball_model.h"
 #include "numerics/errors.h"
 #include "numerics/sample_statistics.h"

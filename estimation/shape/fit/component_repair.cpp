@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "estimation/shape/fit/sphere_growth.h"
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/packing/clearance_grid.h"
 
 namespace astrolith {

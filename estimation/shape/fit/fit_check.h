@@ -1,4 +1,5 @@
 // Measures a fitted body: synthesis makes a mesh of it, which is compared with the target.
+// Also the containment points of a base fit, inside and outside of the target.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,18 @@
 #include "recipe/recipe.h"
 
 namespace astrolith {
+
+struct ContainmentOptions {
+  double deepest = 0.5;      // radius of the largest sphere inside the target, fraction of the diagonal, > 0
+  std::int64_t samples = 0;  // surface samples of the fit, which scale the number of points, >= 0
+  std::uint64_t seed = 1;    // of points anywhere in the box
+  std::uint64_t shell_seed = 2;  // of points beside the surface
+};
+
+// Points at least 0.015 of the diagonal from the surface, shells of points beside it at 0.008, 0.016 and
+// 0.032, and points in the middle of parts that are thinner than the first shell is deep. A body that is thin
+// everywhere has its deep points at half of its greatest depth.
+FitPoints containment_points(const TargetBody& target, const ContainmentOptions& options);
 
 struct FitCheck {
   TriangleMesh mesh;               // the fitted body, in the target's frame

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "estimation/shape/fit/fit_check.h"
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/refinement/rounding.h"
 #include "estimation/shape/target/surface_components.h"
 #include "numerics/errors.h"

@@ -2,19 +2,48 @@
 //
 //   ShapeFitResult fit = fit_shape(prepare_target(read_mesh("bennu.ply"), "bennu.ply"), ShapeFitOptions{});
 //   recipe.body = fit.body;
+//
+// The global parameters of section 4.3.4, the number of spheres, the tensions a and b and the blend exponent
+// m, are found with a derivative-free optimiser. A candidate is not meshed. Fixed points of the target's
+// surface are projected onto the candidate's surface, and the surflet histogram of the projected points is
+// compared with the histogram of the target's points:
+//   fitness = 1 - similarity(target, candidate).
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "descriptor/surface/evened_similarity.h"
+#include "descriptor/surface/evened_surface.h"
 #include "estimation/optimize/optimizer.h"
 #include "estimation/shape/fit/adaptive_fit.h"
 #include "estimation/shape/fit/fit_check.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/target/target_body.h"
+#include "geometry/surface/mesh_sampling.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
+
+struct GlobalParameterSearchOptions {
+  int max_spheres = 100;     // upper bound of the number of spheres, > 0
+  OptimizeOptions optimize;  // algorithm, population, evaluations, seed
+};
+
+struct GlobalParameterSearchSummary {
+  MetaballModel model;                            // the best candidate; its radii include sqrt(a/b)
+  double a = 1.0, b = 1.0, blend_exponent = 1.0;  // its parameters
+  double similarity = 0.0;                        // its similarity to the target, at most 1
+  OptimizeResult optimization;
+};
+
+// `packing` is ordered by radius, the largest first, and not empty. `samples` are points and normals of the
+// target's surface.
+GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>& packing,
+                                                      const SurfaceSamples& samples,
+                                                      const GlobalParameterSearchOptions& options,
+                                                      const Progress& progress = {});
 
 // The default number of surface samples for each metaball, and the least number in all. With fewer samples
 // the fit follows the samples and not the body.

@@ -7,9 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/model/model_evaluation_internal.h"
-#include "estimation/shape/model/model_levels.h"
-#include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
@@ -153,8 +152,8 @@ void mark_holding(const MetaballModel& model, bool subtractive, std::span<const 
     std::vector<std::int32_t>& list = holding[static_cast<std::size_t>(own.front())];
     for (std::size_t i = 0; i < scratch.spheres.size(); ++i) {
       const std::int32_t sphere = scratch.spheres[i];
-      const bool of_kind = model.spheres[static_cast<std::size_t>(sphere)].subtractive == subtractive;
-      if (of_kind && scratch.kernels.largest_share(i) >= share) list.push_back(sphere);
+      const bool same_kind = model.spheres[static_cast<std::size_t>(sphere)].subtractive == subtractive;
+      if (same_kind && scratch.kernels.largest_share(i) >= share) list.push_back(sphere);
     }
   });
   for (const auto& list : holding) {

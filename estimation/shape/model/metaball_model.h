@@ -9,10 +9,15 @@
 //
 // Metaballs may be subtractive (synthesis/body/metaballs.h). The sum is then A = P / (1 + N), where
 // P is the sum of the additive ones and N the sum of the subtractive ones.
+//
+// Levels, distances and projections of many points are computed in parallel, by the equations of
+// block_kernels.h. The results do not depend on the number of threads.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "geometry/surface/mesh_sampling.h"
 #include "recipe/recipe.h"
 #include "synthesis/body/metaballs.h"
 
@@ -63,5 +68,17 @@ MetaballBody metaball_body(const MetaballModel& model);
 // The model of a recipe's body. Throws InputError for bodies that the fit does not support: bodies made by
 // operations, and other kernels than the Gaussian.
 MetaballModel model_of(const MetaballBody& body);
+
+// Takes Newton steps p <- p + s(p) n with n = -grad L / |grad L|. No step is longer than the largest radius.
+// The normals have length 1 and point out of the body. A point that no sphere reaches stays where it is, and
+// its normal points away from the nearest sphere.  (#points in, #points out)
+SurfaceSamples project_onto_isosurface(const MetaballModel& model, std::span<const Vec3d> points,
+                                       int steps = 4);
+
+// The level L of every point: 0 on the surface, positive inside, without unit.  (#points)
+std::vector<double> model_levels(const MetaballModel& model, std::span<const Vec3d> points);
+
+// The first-order signed distance s of every point: positive inside, in length units.  (#points)
+std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points);
 
 }  // namespace astrolith

@@ -1,9 +1,69 @@
-#include <algorithm>
-
 #include "estimation/shape/model/model_evaluation_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
+
+// Sides with more points are split in parallel.
+constexpr std::size_t kManyPoints = 2048;
+
+// A point that carries its index, so that the split reads memory in order.
+struct IndexedPoint {
+  Vec3d at;
+  std::int32_t index;
+};
+
+// As Box::extend(), which calls a function of the C library for each coordinate.
+Box box_of(std::span<const IndexedPoint> points) {
+  Box box;
+  for (const auto& [at, index] : points) {
+    box.min = {std::min(box.min.x, at.x), std::min(box.min.y, at.y), std::min(box.min.z, at.z)};
+    box.max = {std::max(box.max.x, at.x), std::max(box.max.y, at.y), std::max(box.max.z, at.z)};
+  }
+  return box;
+}
+
+PointCluster cluster_of(std::span<const IndexedPoint> points, const Vec3d& center) {
+  PointCluster cluster{{}, center, 0.0};
+  cluster.points.reserve(points.size());
+  for (const IndexedPoint& p : points) {
+    cluster.points.push_back(p.index);
+    cluster.radius = std::max(cluster.radius, norm(p.at - center));
+  }
+  return cluster;
+}
+
+// Splits the points into all of these clusters.
+void split(std::span<IndexedPoint> points, std::span<PointCluster> clusters) {
+  const Box box = box_of(points);
+  if (clusters.size() == 1) {
+    clusters.front() = cluster_of(points, box.center());
+    return;
+  }
+  // Each side gets its share of the clusters and of the points, so that clusters are nearly full.
+  const std::size_t first = clusters.size() / 2;
+  const std::size_t half = (points.size() * first + clusters.size() - 1) / clusters.size();
+  // Points with equal coordinates are ordered by index, so that the order does not depend on the library.
+  double Vec3d::*const axis = longest_axis(box.extent());
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
+                   [axis](const IndexedPoint& a, const IndexedPoint& b) {
+                     return a.at.*axis < b.at.*axis || (a.at.*axis == b.at.*axis && a.index < b.index);
+                   });
+  const auto split_side = [&](std::int64_t side) {
+    if (side == 0) split(points.first(half), clusters.first(first));
+    if (side == 1) split(points.subspan(half), clusters.subspan(first));
+  };
+  if (points.size() > kManyPoints) {
+    parallel_for(0, 2, split_side);
+  } else {
+    split_side(0);
+    split_side(1);
+  }
+}
 
 bool reaches(const ModelSphere& sphere, double reach, const Vec3d& center, double radius) {
   const double distance = radius + reach * sphere.radius;
@@ -23,6 +83,16 @@ ClusterGroup group_of(std::span<const PointCluster> clusters, std::size_t begin,
 }
 
 }  // namespace
+
+std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::size_t size) {
+  if (points.empty()) return {};
+  std::vector<IndexedPoint> indexed;
+  indexed.reserve(points.size());
+  for (const Vec3d& p : points) indexed.push_back({p, static_cast<std::int32_t>(indexed.size())});
+  std::vector<PointCluster> clusters((points.size() + size - 1) / size);
+  split(indexed, clusters);
+  return clusters;
+}
 
 std::vector<ClusterGroup> group_clusters(std::span<const PointCluster> clusters, std::size_t size) {
   std::vector<ClusterGroup> groups;

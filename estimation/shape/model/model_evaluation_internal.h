@@ -9,10 +9,21 @@
 
 #include "estimation/shape/model/block_kernels.h"
 #include "estimation/shape/model/metaball_model.h"
-#include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
+#include "numerics/vec3.h"
 
 namespace astrolith {
+
+struct PointCluster {
+  std::vector<std::int32_t> points;  // indices
+  Vec3d center;                      // centre of a ball that holds them
+  double radius = 0.0;               // radius of this ball
+};
+
+// Splits the points along the longest side of their bounding box until no cluster has more than `size` > 0
+// points. Their number is the least, #points / size rounded up, and clusters differ by a point or two.
+// Clusters that follow one another lie close together. The result depends on the points only.
+std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::size_t size);
 
 // Some clusters that follow one another, and a ball that holds their points.
 struct ClusterGroup {
@@ -34,7 +45,8 @@ void find_spheres(const MetaballModel& model, double reach, const Vec3d& center,
 
 // What one thread needs to evaluate clusters one after another.
 struct ClusterScratch {
-  std::vector<std::int32_t> of_group, spheres;  // indices, ascending: that reach the group, and the cluster
+  std::vector<std::int32_t> group_spheres,
+      spheres;  // indices, ascending: that reach the group, and the cluster
   std::vector<Vec3d> points;
   BlockKernels kernels;
 };
@@ -47,9 +59,10 @@ void for_each_cluster(const MetaballModel& model, std::span<const PointCluster> 
   parallel_for(0, static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
     const ClusterGroup& group = groups[static_cast<std::size_t>(g)];
     ClusterScratch scratch;
-    find_spheres(model, reach, group.center, group.radius, scratch.of_group);
+    find_spheres(model, reach, group.center, group.radius, scratch.group_spheres);
     for (std::size_t c = group.begin; c < group.end; ++c) {
-      find_spheres(model, reach, clusters[c].center, clusters[c].radius, scratch.of_group, scratch.spheres);
+      find_spheres(model, reach, clusters[c].center, clusters[c].radius, scratch.group_spheres,
+                   scratch.spheres);
       visit(c, scratch);
     }
   });

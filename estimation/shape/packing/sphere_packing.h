@@ -5,10 +5,12 @@
 // Here nothing is random: a grid holds the clearance of every place
 // (estimation/shape/packing/clearance_grid.h). The place of largest clearance climbs to its node, away from
 // the nearest obstacle, by exact distances and with steps that grow shorter. The sphere is placed there, and
-// the clearance around it is lowered.
+// the clearance around it is lowered. A packing is written as a table for spreadsheets and gravity codes.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "geometry/surface/surface_tree.h"
@@ -35,5 +37,21 @@ struct Packing {
 // little of its bounding box.
 Packing pack_spheres(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options,
                      const Progress& progress = {});
+
+struct PackingTable {
+  std::string title;         // first comment line
+  std::string length_unit;   // "m" or "km": the unit of centres and radii
+  double body_volume = 0.0;  // length_unit^3
+  double density = 0.0;      // kg / m^3, >= 0; 0 leaves the masses out
+};
+
+// The mass of each sphere in kg. The spheres share the mass of the whole body in proportion to their volumes,
+// so that the mascons (point masses at the centres) weigh as much as the body.
+std::vector<double> sphere_masses(const std::vector<Sphere>& spheres, const PackingTable& table);
+
+// Writes the columns x, y, z and radius, and the masses if a density is given. Throws InputError if the file
+// cannot be written.
+void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable& table,
+                         const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "estimation/shape/model/metaball_model.h"
-#include "estimation/shape/target/fit_points.h"
+#include "estimation/shape/target/target_body.h"
 #include "geometry/surface/surface_tree.h"
 #include "numerics/progress.h"
 

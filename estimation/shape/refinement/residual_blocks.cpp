@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/refinement/residual_blocks_internal.h"
 #include "numerics/parallel_for.h"
 

@@ -141,20 +141,21 @@ void extend(HeightRange& range, const HeightRange& by) {
 
 // Extends the ranges of the slots of tiles by the samples of a run, which are sorted by their squares.
 void extend_ranges(const SampleRun& run, const std::vector<ReliefSample>& samples,
-                   std::vector<HeightRange>& of_slots) {
+                   std::vector<HeightRange>& slot_ranges) {
   for (std::uint32_t i = run.first; i < run.end;) {
     PointWeights p;
     find_weights(samples[i].at, p);
     const int square = square_of(samples[i].at);
-    HeightRange of_square = kNoHeights;
+    HeightRange square_range = kNoHeights;
     for (; i < run.end && square_of(samples[i].at) == square; ++i)
-      extend(of_square, {samples[i].height, samples[i].height});
+      extend(square_range, {samples[i].height, samples[i].height});
     for (int a = 0; a < 3; ++a) {
       const std::int32_t tile = run.tiles[static_cast<std::size_t>(a)];
       if (tile == 0) continue;
       const auto corner = static_cast<std::size_t>(corner_of_square(p, a, tile));
       for (std::size_t j = 0; j < 4; ++j) {
-        for (std::size_t k = 0; k < 4; ++k) extend(of_slots[corner + j * kReliefTileSide + k], of_square);
+        for (std::size_t k = 0; k < 4; ++k)
+          extend(slot_ranges[corner + j * kReliefTileSide + k], square_range);
       }
     }
   }
@@ -219,15 +220,15 @@ std::vector<double> ReliefBlend::read_cells(SampleSum of, const std::vector<doub
 }
 
 std::vector<double> ReliefBlend::sums(SampleSum of, const std::vector<double>& heights) const {
-  std::vector<float> of_tiles;
-  read_cells(of, heights, of_tiles);
+  std::vector<float> tile_heights;
+  read_cells(of, heights, tile_heights);
   std::vector<double> sums(samples_.places.size());
   parallel_for(
       0, static_cast<std::int64_t>(sums.size()),
       [&](std::int64_t number) {
         const auto i = static_cast<std::size_t>(number);
         double sum = 0.0;
-        for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) sum += double{of_tiles[slots_[k]]};
+        for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) sum += double{tile_heights[slots_[k]]};
         const double weight = samples_.places[i].weight;
         sums[i] = (of == SampleSum::kShare ? weight * weight : weight) * sum;
       },
@@ -236,20 +237,20 @@ std::vector<double> ReliefBlend::sums(SampleSum of, const std::vector<double>& h
 }
 
 std::vector<HeightRange> ReliefBlend::ranges() const {
-  std::vector<HeightRange> of_slots(samples_.tiles.places.size(), kNoHeights);
+  std::vector<HeightRange> slot_ranges(samples_.tiles.places.size(), kNoHeights);
   parallel_for(
       0, static_cast<std::int64_t>(samples_.cells()),
       [&](std::int64_t number) {
         const auto cell = static_cast<std::size_t>(number);
         for (std::uint32_t r = samples_.first_run_of_cell[cell]; r < samples_.first_run_of_cell[cell + 1];
              ++r)
-          extend_ranges(samples_.runs[r], samples_.samples, of_slots);
+          extend_ranges(samples_.runs[r], samples_.samples, slot_ranges);
       },
       16);
   std::vector<HeightRange> ranges(samples_.places.size());
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     HeightRange range = kNoHeights;
-    for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) extend(range, of_slots[slots_[k]]);
+    for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) extend(range, slot_ranges[slots_[k]]);
     ranges[i] = range.least <= range.greatest ? range : HeightRange{0.0f, 0.0f};
   }
   return ranges;
@@ -258,7 +259,7 @@ std::vector<HeightRange> ReliefBlend::ranges() const {
 double ReliefBlend::mean_residual(const std::vector<double>& heights) const {
   std::vector<float> unused;
   double sum = 0.0;
-  for (const double of_cell : read_cells(SampleSum::kError, heights, unused)) sum += of_cell;
+  for (const double cell_error : read_cells(SampleSum::kError, heights, unused)) sum += cell_error;
   return sum / static_cast<double>(samples_.samples.size());
 }
 

@@ -2,19 +2,94 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "estimation/shape/relief/relief_solver.h"
+#include "estimation/shape/relief/relief_blend.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/portable_double.h"
+#include "numerics/progress.h"
+#include "numerics/sample_statistics.h"
 #include "recipe/compact/height_picture.h"
+#include "synthesis/body/ground_points.h"
 #include "synthesis/relief/relief_picture.h"
+#include "synthesis/relief/relief_tiles.h"
 
 namespace astrolith {
 namespace {
+
+// The places that the projections of the points take their heights from, each once.
+std::vector<std::uint32_t> places_below(const std::vector<Vec3d>& points, const BodyGround& ground,
+                                        const ReliefShares& shares) {
+  GroundPoints feet(points);
+  evaluate(ground, feet);
+  project(ground, feet);
+  std::vector<std::uint32_t> below;
+  std::vector<float> unused;
+  for (std::size_t i = 0; i < feet.size(); ++i) shares.add(feet.at(i), below, unused);
+  std::sort(below.begin(), below.end());
+  below.erase(std::unique(below.begin(), below.end()), below.end());
+  return below;
+}
+
+std::uint16_t halved_code(const ReliefLayer& layer, std::uint16_t code) {
+  const double height = layer.low + layer.step() * code;
+  const double half = std::trunc(0.5 * height / layer.step()) * layer.step();  // so that it ends at 0
+  return static_cast<std::uint16_t>(
+      std::clamp(std::floor((half - layer.low) / layer.step() + 0.5), 0.0, layer.levels - 1.0));
+}
+
+constexpr double kPull = 2e-3;  // towards the local mean
+// More of them bring the surface hardly nearer, and make heights that take more bytes.
+constexpr int kIterations = 12;
+
+// One height for each place, length units: the least squares of
+//   sum_i (sum_k share_ik h_k - height_i)^2 + kPull d sum_k (h_k - m_k)^2
+// by conjugate gradients, where m_k is the mean of the samples around the place weighted by their shares, and
+// d the mean over the places of the sum of the squares of their shares. A place that hardly any sample sees,
+// as at the border of a map, so keeps that mean. Places without samples get 0. `progress` may end the
+// iteration early.
+std::vector<double> solve_relief(const ReliefBlend& blend, const Progress& progress) {
+  // The means, and the diagonal of the normal equations.
+  const std::vector<double> shares = blend.sums(SampleSum::kOne, {}),
+                            diagonal = blend.sums(SampleSum::kShare, {});
+  std::vector<double> heights = blend.sums(SampleSum::kHeight, {});
+  const std::size_t n = heights.size();
+  for (std::size_t p = 0; p < n; ++p) heights[p] = shares[p] > 0.0 ? heights[p] / shares[p] : 0.0;
+  const double pull = kPull * std::accumulate(diagonal.begin(), diagonal.end(), 0.0) / static_cast<double>(n);
+
+  // Conjugate gradients for the change, preconditioned by the diagonal.
+  std::vector<double> residual = blend.sums(SampleSum::kError, heights), change(n, 0.0), scaled(n);
+  const auto scale = [&] {
+    for (std::size_t p = 0; p < n; ++p)
+      scaled[p] = diagonal[p] > 0.0 ? residual[p] / (diagonal[p] + pull) : 0.0;
+  };
+  scale();
+  std::vector<double> direction = scaled;
+  double energy = sum_of_products(residual, scaled);
+  const double enough = 1e-12 * energy;
+  for (int i = 0; i < kIterations && energy > enough; ++i) {
+    if (!report(progress, static_cast<double>(i) / kIterations, "relief")) break;
+    std::vector<double> image = blend.sums(SampleSum::kBlend, direction);
+    for (std::size_t p = 0; p < n; ++p) image[p] += pull * direction[p];
+    const double step = energy / sum_of_products(direction, image);
+    for (std::size_t p = 0; p < n; ++p) {
+      change[p] += step * direction[p];
+      residual[p] -= step * image[p];
+    }
+    scale();
+    const double next = sum_of_products(residual, scaled);
+    for (std::size_t p = 0; p < n; ++p) direction[p] = scaled[p] + next / energy * direction[p];
+    energy = next;
+  }
+  for (std::size_t p = 0; p < n; ++p) heights[p] += change[p];
+  return heights;
+}
 
 constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth to the residual
 constexpr int kMostLevels = 65535;
@@ -27,10 +102,10 @@ constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSma
 double least_spacing(const TriangleMesh& surface) {
   const Box box = surface.bounds();
   const Vec3d extent = box.extent();
-  const double of_picture =
+  const double picture_spacing =
       std::max(extent.x + extent.y + extent.z, 2.0 * box.longest_side()) / kMostHeightPictureSide;
-  const double of_cells = portable::cbrt(extent.x * extent.y * extent.z / kMostReliefCells) / kReliefCell;
-  return 1.03 * std::max(of_picture, of_cells);
+  const double cell_spacing = portable::cbrt(extent.x * extent.y * extent.z / kMostReliefCells) / kReliefCell;
+  return 1.03 * std::max(picture_spacing, cell_spacing);
 }
 
 void expect_plain_body(const Recipe& recipe) {
@@ -90,6 +165,34 @@ std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::v
 }
 
 }  // namespace
+
+std::size_t halve_heights(const std::vector<Vec3d>& points, Recipe& recipe) {
+  const auto found = std::find_if(recipe.layers.begin(), recipe.layers.end(), [](const Layer& layer) {
+    return std::holds_alternative<ReliefLayer>(layer);
+  });
+  if (points.empty() || found == recipe.layers.end()) return 0;
+  ReliefLayer& layer = std::get<ReliefLayer>(*found);
+  ArrayStore arrays;
+  const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
+  const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+  const BodyGround ground{body, arrays.view(), metaballs.lists()};
+  const std::vector<ReliefPlace> places = find_relief_places(ground, layer.spacing, "relief");
+  const ReliefTiles tiles = make_relief_tiles(places, "relief");
+  const ReliefLayout layout = relief_layout(places);
+  auto image = std::make_shared<ExemplarImage>(*layer.pixels);
+  std::size_t changed = 0;
+  for (const std::uint32_t place : places_below(points, ground, ReliefShares(places, tiles, layer.spacing))) {
+    const auto width = static_cast<std::size_t>(layout.width);
+    std::uint16_t& value =
+        image->values[layout.pixels[place] / width * static_cast<std::size_t>(image->width) +
+                      layout.pixels[place] % width];
+    const std::uint16_t halved = layer.value_of(halved_code(layer, layer.code_of(value)));
+    changed += value != halved;
+    value = halved;
+  }
+  layer.pixels = std::move(image);
+  return changed;
+}
 
 double least_relief_spacing(const TriangleMesh& surface) {
   const double vertices = static_cast<double>(surface.vertices.size());

@@ -2,17 +2,26 @@
 //
 // The synthesis puts a point q on the surface where s(q) + n(p) = 0, with p the projection of q on the bare
 // body. So every point q of the measured surface says n(p) = -s(q), and the heights at the places of the
-// layer follow from many such points by least squares (relief_solver.h). The same projection serves the fit
+// layer follow from many such points by least squares (relief_fit.cpp). The same projection serves the fit
 // and the synthesis: it needs neither to be along the normal nor exact.
+// Heights are taken back where they make what neither the metaballs nor the target have.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
+#include "numerics/vec3.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
+
+// Halves the heights that give these points theirs: those around the points' projections on the bare body.
+// Halved again and again, the surface there becomes that of the metaballs. Points are in the frame and unit
+// of the recipe. Its first relief is one of its own body, as fit_relief() makes it. Returns how many heights
+// changed; 0 without a relief.
+std::size_t halve_heights(const std::vector<Vec3d>& points, Recipe& recipe);
 
 // A model with fewer facets has no relief that its metaballs do not show.
 inline constexpr std::size_t kFewestReliefFacets = 1000;

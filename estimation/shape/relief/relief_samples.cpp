@@ -1,10 +1,9 @@
-#include "estimation/shape/relief/relief_samples.h"
+#include "estimation/shape/relief/relief_blend.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "estimation/shape/relief/relief_blend.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/body/ground_points.h"
@@ -28,17 +27,17 @@ class SurfacePoints {
   SurfacePoints(const TriangleMesh& surface, double spacing)
       : surface_(surface),
         used_(surface.vertices.size(), 0),
-        of_vertices_(groups(surface.vertices.size())),
-        of_facets_(kSmallEdges * spacing < mean_edge(surface) ? groups(4 * surface.triangles.size()) : 0) {
+        vertex_groups_(groups(surface.vertices.size())),
+        facet_groups_(kSmallEdges * spacing < mean_edge(surface) ? groups(4 * surface.triangles.size()) : 0) {
     for (const Triangle& t : surface.triangles) {
       for (const std::uint32_t corner : t) used_[corner] = 1;
     }
   }
 
-  std::size_t count() const { return of_vertices_ + of_facets_; }
+  std::size_t count() const { return vertex_groups_ + facet_groups_; }
   std::vector<Vec3d> group(std::size_t number) const {
-    return number < of_vertices_ ? vertices(number * kGroup)
-                                 : on_facets((number - of_vertices_) * (kGroup / 4));
+    return number < vertex_groups_ ? vertices(number * kGroup)
+                                   : on_facets((number - vertex_groups_) * (kGroup / 4));
   }
 
  private:
@@ -66,7 +65,7 @@ class SurfacePoints {
 
   const TriangleMesh& surface_;
   std::vector<char> used_;
-  std::size_t of_vertices_, of_facets_;
+  std::size_t vertex_groups_, facet_groups_;
 };
 
 class SampleFinder {
@@ -162,12 +161,12 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
                  static_cast<std::int64_t>(std::min(first + kTogether, groups.size())),
                  [&](std::int64_t number) {
                    const auto g = static_cast<std::size_t>(number);
-                   const std::vector<Vec3d> of_group = points.group(g);
-                   groups[g] = finder.samples_of(of_group);
-                   asked[g] = of_group.size() - groups[g].size();
+                   const std::vector<Vec3d> group_points = points.group(g);
+                   groups[g] = finder.samples_of(group_points);
+                   asked[g] = group_points.size() - groups[g].size();
                  });
   }
-  for (const std::size_t of_group : asked) made.left_out += of_group;
+  for (const std::size_t left_out : asked) made.left_out += left_out;
 
   const std::vector<PlacedSample> placed = sorted(groups, made.tiles.tiles.size() / 3);
   made.samples.reserve(placed.size());

@@ -9,6 +9,10 @@
 namespace astrolith {
 namespace {
 
+std::string counted_things(std::int64_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
 // About this many vertices of a fit's component vote for the nearest component of the target.
 constexpr std::size_t kVotes = 100;
 
@@ -69,6 +73,18 @@ StrayComponent stray_of(const TriangleMesh& fit, const FitComponent& component) 
 }
 
 }  // namespace
+
+std::string PartsAndHandles::words() const {
+  return counted_things(parts, "part") + " and " + counted_things(handles, "handle");
+}
+
+PartsAndHandles parts_and_handles(const TargetBody& target) {
+  return {target.components, analyze_topology(target.mesh).genus};
+}
+
+PartsAndHandles parts_and_handles(const MeshTopology& topology) {
+  return {topology.components, topology.genus};
+}
 
 ComponentComparison compare_components(const TargetBody& target, const TriangleMesh& fit) {
   const std::vector<double> wanted = component_volumes(target);

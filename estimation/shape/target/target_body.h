@@ -7,14 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "estimation/shape/target/fit_points.h"
 #include "geometry/surface/surface_tree.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/errors.h"
 #include "numerics/progress.h"
+#include "numerics/vec3.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
+
+// Points in the target's frame, whose unit is the diagonal of the bounding box.
+struct FitPoints {
+  std::vector<Vec3d> on_surface;  // the model's surface must pass through them
+  std::vector<Vec3d> inside;      // they must lie inside the model
+  std::vector<Vec3d> outside;     // they must lie outside the model
+};
 
 // A mesh that passes through itself.
 class CrossingMesh : public InputError {

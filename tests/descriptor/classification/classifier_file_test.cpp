@@ -1,5 +1,5 @@
 #include "descriptor/classification/classifier_file.h"
-#include "descriptor/classification/class_folders.h"
+#include "descriptor/classification/feature_table.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "tests/descriptor/classification/clusters.h"

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/evaluation.h"
 #include "descriptor/classification/retrieval.h"
 #include "numerics/errors.h"

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "descriptor/spectrum/laplacian_spectrum.h"
-#include "descriptor/spectrum/point_cloud_triangles.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

@@ -1,4 +1,4 @@
-#include "descriptor/surface/block_permutations.h"
+#include "descriptor/surface/realism.h"
 
 #include <algorithm>
 #include <cmath>

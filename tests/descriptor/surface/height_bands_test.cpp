@@ -6,7 +6,7 @@
 
 #include "descriptor/surface/evened_surface.h"
 #include "descriptor/surface/height_bands.h"
-#include "descriptor/surface/local_quadric.h"
+#include "descriptor/surface/surface_quantity.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"

@@ -3,7 +3,6 @@
 
 #include "estimation/page/page_internal.h"
 #include "estimation/page/report_page.h"
-#include "estimation/page/turnable_surfaces.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {

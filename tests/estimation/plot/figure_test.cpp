@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "estimation/plot/axis.h"
 #include "estimation/plot/figure.h"
 #include "numerics/errors.h"
 #include "tests/support/scratch_folder.h"

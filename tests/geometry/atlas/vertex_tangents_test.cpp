@@ -1,7 +1,7 @@
-#include "geometry/atlas/vertex_tangents.h"
+#include "geometry/atlas/texture_coordinates.h"
 
 #include "geometry/atlas/texture_atlas.h"
-#include "geometry/mesh_normals.h"
+#include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {

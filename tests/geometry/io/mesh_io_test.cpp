@@ -2,7 +2,6 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "tests/support/data.h"

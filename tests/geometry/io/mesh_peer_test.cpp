@@ -4,7 +4,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include "geometry/io/mesh_io.h"
-#include "geometry/mesh_normals.h"
+#include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include "geometry/io/ply_stream_reader.h"
 #include "geometry/io/ply_stream_writer.h"
-#include "geometry/mesh_normals.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"

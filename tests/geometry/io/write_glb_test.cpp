@@ -14,9 +14,8 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"
 

@@ -8,7 +8,6 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/surface/curvature.h"
 #include "geometry/surface/sample_curvature.h"
 #include "numerics/errors.h"
 #include "tests/support/data.h"

@@ -3,11 +3,10 @@
 #include <limits>
 
 #include "geometry/mesh_measure.h"
-#include "geometry/surface/closest_on_triangle.h"
 #include "geometry/surface/decimated_mesh.h"
-#include "geometry/surface/footprint_planes.h"
 #include "geometry/surface/height_map.h"
 #include "geometry/surface/mesh_sampling.h"
+#include "geometry/surface/surface_tree.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/support/meshes.h"

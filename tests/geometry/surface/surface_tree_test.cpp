@@ -2,10 +2,9 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/surface/closest_on_triangle.h"
+#include "geometry/mesh_measure.h"
 #include "geometry/surface/surface_distance.h"
 #include "geometry/surface/surface_tree.h"
-#include "geometry/winding_number.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"

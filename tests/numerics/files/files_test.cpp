@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "numerics/errors.h"
-#include "numerics/files/append_line.h"
 #include "numerics/files/npy_file.h"
+#include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/files/zstd_stream.h"
 #include "numerics/hash_random.h"

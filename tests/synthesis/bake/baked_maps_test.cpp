@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "numerics/parallel_for.h"
-#include "synthesis/bake/map_borders.h"
 #include "synthesis/field/field_mesh.h"
 #include "tests/synthesis/bodies.h"
 

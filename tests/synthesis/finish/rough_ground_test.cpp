@@ -1,9 +1,8 @@
-#include "synthesis/finish/rough_ground.h"
+#include "synthesis/finish/known_population.h"
 
 #include <cmath>
 
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/finish/known_population.h"
 #include "synthesis/landforms/boulder_field.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"

@@ -1,4 +1,4 @@
-#include "synthesis/finish/variation_search.h"
+#include "synthesis/finish/recipe_variation.h"
 
 #include <string>
 

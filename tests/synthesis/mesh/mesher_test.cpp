@@ -7,7 +7,7 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/weld.h"
+#include "geometry/wound_surface.h"
 #include "numerics/hash_random.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tests/synthesis/analytic_field.h"

@@ -5,7 +5,7 @@
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/relief/relief_bounds.h"
-#include "synthesis/relief/relief_texture.h"
+#include "synthesis/relief/relief_level_ground.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
 

@@ -6,8 +6,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/relief/relief_anchors.h"
 #include "synthesis/relief/relief_donors.h"
+#include "synthesis/relief/relief_patches.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"

@@ -1,10 +1,9 @@
-#include "synthesis/relief/relief_room.h"
+#include "synthesis/relief/relief_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "synthesis/relief/relief_values.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
 

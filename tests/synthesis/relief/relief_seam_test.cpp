@@ -1,4 +1,4 @@
-#include "synthesis/relief/relief_seam.h"
+#include "synthesis/relief/relief_laying.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // classify: folders of meshes to a classifier, meshes to classes.
-#include "tasks/description/classify.h"
+#include "tasks/description/description_jobs.h"
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/hash_random.h"

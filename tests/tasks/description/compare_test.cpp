@@ -1,5 +1,5 @@
 // compare: similarity, distances and the verdict on two surfaces.
-#include "tasks/description/compare.h"
+#include "tasks/description/description_jobs.h"
 
 #include "geometry/io/mesh_io.h"
 #include "tests/support/meshes.h"

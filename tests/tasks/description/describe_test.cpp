@@ -1,5 +1,5 @@
 // describe: histograms of shapes, and statistics of surfaces.
-#include "tasks/description/describe.h"
+#include "tasks/description/description_jobs.h"
 
 #include <numeric>
 

@@ -1,5 +1,5 @@
 // render: pictures of meshes, in the colours of a property.
-#include "tasks/description/render.h"
+#include "tasks/description/description_jobs.h"
 
 #include "tests/tasks/job_runner.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "estimation/shape/details/detailed_check.h"
-#include "estimation/shape/target/parts_and_handles.h"
+#include "estimation/shape/details/details_fit.h"
+#include "estimation/shape/target/surface_components.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"

@@ -12,7 +12,6 @@
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
-#include "tasks/repair/repair_words.h"
 #include "tests/support/meshes.h"
 #include "tests/support/refusal.h"
 

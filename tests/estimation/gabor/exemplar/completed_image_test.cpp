@@ -1,4 +1,4 @@
-#include "estimation/gabor/exemplar/completed_image.h"
+#include "estimation/gabor/exemplar/phase_exemplar.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "estimation/gabor/image/missing_ground.h"
-#include "estimation/gabor/spectrum/octaves.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
 #include "numerics/sample_statistics.h"
 #include "tests/estimation/gabor/known_spectrum.h"

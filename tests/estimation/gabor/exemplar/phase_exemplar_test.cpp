@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "numerics/errors.h"
 #include "numerics/sample_statistics.h"
 #include "tests/estimation/gabor/known_spectrum.h"

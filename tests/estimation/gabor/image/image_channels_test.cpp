@@ -1,9 +1,7 @@
 #include <cmath>
 
-#include "estimation/gabor/image/detrend.h"
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "tests/estimation/gabor/known_spectrum.h"

@@ -1,12 +1,10 @@
 #include <cmath>
 
 #include "estimation/gabor/gabor_fit.h"
-#include "estimation/gabor/lobes/lobe_misfit.h"
 #include "estimation/gabor/lobes/lobe_quality.h"
 #include "estimation/gabor/lobes/lobe_refinement.h"
 #include "estimation/gabor/lobes/lobe_selection.h"
-#include "estimation/gabor/spectrum/octaves.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
 #include "numerics/parallel_for.h"
 #include "tests/estimation/gabor/known_spectrum.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/gabor/pursuit/duality_certificate.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 

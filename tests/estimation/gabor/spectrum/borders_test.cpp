@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "estimation/gabor/spectrum/border_taper.h"
-#include "estimation/gabor/spectrum/periodic_component.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
 #include "estimation/gabor/spectrum/tapered_periodogram.h"
 #include "numerics/hash_random.h"

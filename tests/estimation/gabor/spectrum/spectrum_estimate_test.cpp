@@ -4,9 +4,7 @@
 #include <numbers>
 #include <string>
 
-#include "estimation/gabor/spectrum/log_spectrum_spline.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
-#include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

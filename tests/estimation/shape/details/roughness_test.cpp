@@ -3,9 +3,8 @@
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/surflet_histogram.h"
+#include "estimation/shape/details/detail_fitness.h"
 #include "estimation/shape/details/imaged_ground.h"
-#include "estimation/shape/details/moved_mesh.h"
-#include "estimation/shape/details/probe_layout.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "estimation/shape/details/roughness.h"
 #include "estimation/shape/details/surface_probe.h"

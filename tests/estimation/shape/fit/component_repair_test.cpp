@@ -1,7 +1,6 @@
 #include "estimation/shape/fit/component_repair.h"
-#include "estimation/shape/fit/containment.h"
 #include "estimation/shape/fit/fit_check.h"
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "tests/support/meshes.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/refinement/rounding.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

@@ -2,8 +2,7 @@
 
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/fit/sphere_growth.h"
-#include "estimation/shape/model/isosurface_projection.h"
-#include "estimation/shape/model/model_levels.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/model/model_evaluation_internal.h"
-#include "estimation/shape/model/model_levels.h"
 #include "numerics/hash_random.h"
 #include "synthesis/body/metaball_body.h"
 

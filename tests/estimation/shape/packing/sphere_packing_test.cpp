@@ -3,7 +3,6 @@
 #include <fstream>
 
 #include "estimation/shape/packing/clearance_grid.h"
-#include "estimation/shape/packing/packing_table.h"
 #include "estimation/shape/packing/sphere_packing.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"

@@ -1,4 +1,4 @@
-#include "estimation/shape/relief/relief_softening.h"
+#include "estimation/shape/relief/relief_fit.h"
 
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"

@@ -2,7 +2,6 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/shape/report/captioned_picture.h"
 #include "estimation/shape/report/fit_plots.h"
 #include "numerics/errors.h"
 #include "tests/support/scratch_folder.h"
