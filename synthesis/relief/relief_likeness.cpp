@@ -24,8 +24,8 @@ void add(const std::vector<double>& heights, std::vector<double>& sum, double ga
 
 using BandRms = std::array<double, kReliefBands>;
 
-// The geometric mean over the body of the root mean square around a place. A mean of squares would be that of
-// few rough places. With `seen_alone` places below a seventh of the third quartile do not count.
+// The strength r of a band, from the mean squares q around some places. With `seen_alone` places below a
+// seventh of the third quartile do not count.
 double typical_rms(const ReliefPoints& points, const std::vector<std::uint32_t>& places,
                    const std::vector<double>& squares, bool seen_alone) {
   constexpr double kLeast = 1e-12;  // of the largest square
@@ -131,15 +131,16 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
                      "; keep the arrangement measured, or fit a finer model");
   }
   if (places.empty()) return {};  // a base that is smaller than the spacing
-  const ReliefPoints& of_measured = patches.points();
+  const ReliefPoints& measured_points = patches.points();
   std::optional<ReliefPoints> others;
   if (foreign) others.emplace(places, spacing);
-  const ReliefPoints& points = foreign ? *others : of_measured;
+  const ReliefPoints& points = foreign ? *others : measured_points;
   const ReliefValues blend(points, ReliefShares(places, tiles, spacing));
-  const ReliefValues of_donors = foreign ? measured_blend(patches, spacing) : blend;
-  ReliefBands bands = surface_bands(patches, of_donors);
+  const ReliefValues donor_blend = foreign ? measured_blend(patches, spacing) : blend;
+  ReliefBands bands = surface_bands(patches, donor_blend);
   if (foreign) add(bands.rest, bands.bands.back());
-  const BandRms wants = typical_rms(of_measured, values_of(of_donors, bands.bands), apart.edge, options.fill);
+  const BandRms wants =
+      typical_rms(measured_points, values_of(donor_blend, bands.bands), apart.edge, options.fill);
   const std::vector<ReliefAnchor> own = foreign ? relief_anchors(points, apart.distance()) : anchors;
   std::vector<LaidHeights> laid(points.size());
   lay_patches(patches, bands.bands, points, own, ReliefDonors(patches, own, options.reach, options.fill),
