@@ -16,7 +16,7 @@ pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)  # PNG
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
-  find_package(OpenCV REQUIRED COMPONENTS core imgproc ml)  # pictures of reports, random forests
+  find_package(OpenCV REQUIRED COMPONENTS core ml)  # random forests
   pkg_check_modules(GDAL REQUIRED IMPORTED_TARGET gdal)  # rasters in
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(CGAL REQUIRED)              # repair of meshes

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
@@ -132,6 +131,48 @@ Axis pixel_axis(int size, bool upwards, const std::string& label) {
   return axis;
 }
 
+// How much of a pixel lies in a pixel of a smaller picture, along one axis.
+struct PixelShare {
+  int from, to;
+  float share;  // of the pixel `to`
+};
+
+std::vector<PixelShare> pixel_shares(int from_size, int to_size, double scale) {
+  constexpr double kLeast = 1e-3;
+  std::vector<PixelShare> shares;
+  for (int to = 0; to < to_size; ++to) {
+    const double low = to * scale, high = std::min(low + scale, static_cast<double>(from_size));
+    for (int from = static_cast<int>(low); from < high; ++from) {
+      const double covered = std::min(from + 1.0, high) - std::max(static_cast<double>(from), low);
+      if (covered > kLeast) shares.push_back({from, to, static_cast<float>(covered / (high - low))});
+    }
+  }
+  return shares;
+}
+
+// The picture at a smaller scale: each pixel is the mean over the area that it covers.
+ReportPicture scaled_down(const ReportPicture& picture, double factor) {
+  const auto scaled = [&](int side) { return static_cast<int>(std::lround(side * factor)); };
+  ReportPicture small{scaled(picture.width), scaled(picture.height), {}};
+  const std::vector<PixelShare> columns = pixel_shares(picture.width, small.width, 1.0 / factor),
+                                rows = pixel_shares(picture.height, small.height, 1.0 / factor);
+  const std::size_t from_row = 3 * static_cast<std::size_t>(picture.width),
+                    to_row = 3 * static_cast<std::size_t>(small.width);
+  std::vector<float> sums(to_row * static_cast<std::size_t>(small.height)), row(to_row);
+  for (const PixelShare& y : rows) {
+    std::fill(row.begin(), row.end(), 0.0f);
+    const std::uint8_t* pixels = picture.rgb.data() + static_cast<std::size_t>(y.from) * from_row;
+    for (const PixelShare& x : columns) {
+      for (int c = 0; c < 3; ++c)
+        row[static_cast<std::size_t>(3 * x.to + c)] += x.share * static_cast<float>(pixels[3 * x.from + c]);
+    }
+    float* sum = sums.data() + static_cast<std::size_t>(y.to) * to_row;
+    for (std::size_t i = 0; i < to_row; ++i) sum[i] += y.share * row[i];
+  }
+  for (const float sum : sums) small.rgb.push_back(static_cast<std::uint8_t>(std::nearbyint(sum)));
+  return small;
+}
+
 // Draws a photo into a panel, whose side is as long as the longer side of the photo. A photo with more pixels
 // than a page shows is scaled down first.
 void draw_photo(Figure& page, const Rectangle& within, const ReportPicture& picture) {
@@ -139,12 +180,8 @@ void draw_photo(Figure& page, const Rectangle& within, const ReportPicture& pict
   const int longer = std::max(picture.width, picture.height);
   const double fit = kPanel / longer;
   const Rectangle at{within.x, within.y, picture.width * fit, picture.height * fit};
-  const cv::Mat whole(picture.height, picture.width, CV_8UC3, const_cast<std::uint8_t*>(picture.rgb.data()));
-  cv::Mat shown = whole;
-  if (longer > kFinest) {
-    cv::resize(whole, shown, {}, kFinest / longer, kFinest / longer, cv::INTER_AREA);
-  }
-  page.picture(at, shown.cols, shown.rows, {shown.data, shown.total() * 3}, longer >= 128);
+  const ReportPicture shown = longer > kFinest ? scaled_down(picture, kFinest / longer) : picture;
+  page.picture(at, shown.width, shown.height, shown.rgb, longer >= 128);
   page.axes(at, pixel_axis(picture.width, false, "pixels"), pixel_axis(picture.height, true, "pixels"));
 }
 
