@@ -43,8 +43,8 @@ def gather(programs, bodies):
     """Makes the population of all bodies, populations/asteroids.astro, with what the table knows of them."""
     with tempfile.TemporaryDirectory() as folder:
         table = pathlib.Path(folder) / "bodies.csv"
-        rows = [f"{b['name']},{b['source']},{b.get('rotation_period_h', '')},{b.get('bulk_density_kg_m3', '')}" for b in bodies]
-        table.write_text("\n".join(["name,source,rotation_period_h,density_kg_m3", *rows]) + "\n")
+        rows = [f"{b['name']},{b['source']},{b.get('class', '')},{b.get('rotation_period_h', '')},{b.get('bulk_density_kg_m3', '')}" for b in bodies]
+        table.write_text("\n".join(["name,source,class,rotation_period_h,density_kg_m3", *rows]) + "\n")
         recipes = [LIBRARY / f"{body['name']}.astro" for body in bodies]
         subprocess.run([programs / "fit_population", *recipes, "-o", LIBRARY / "populations/asteroids.astro", "--table", table, "--unit", "m"], check=True)
 
