@@ -14,7 +14,7 @@ scripts/fetch_data.sh
 # GPU code wherever there is a compiler for it.
 cuda=OFF
 nvidia-smi -L >/dev/null 2>&1 && cuda=ON
-scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape synth describe compare classify gravity render check_tiles
+scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape fit_population synth describe compare classify gravity render check_tiles
 
 # The shape model is a measured Itokawa where the data folder lies beside the checkout, else Debian's Gaspra.
 shape=${mesh:-../shared/data/shapes/itokawa_gaskell_49k.ply}
