@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What is known of a body before it is seen, drawn a hundred times, and where the body itself then lies.
+"""What is known of a body before it is seen, drawn many times, and where the body itself then lies.
 
-    before_arrival.py build/release/bin --truth bennu --diameter 492+-20 --axes 1.15:1.07:1+-0.05 --density 1190 --period 4.296 --draws 40
+    before_arrival.py build/release/bin --truth bennu --diameter 492+-20 --axes 1.15:1.07:1+-0.05 --density 1190 --period 4.296 --draws 24
 
 The truth is a body of library/, which is left out of the population. Each draw has the ground of another body
 (--details relief). Slopes are those of the vertices against gravity and rotation. The last column is the share of the draws
@@ -71,7 +71,7 @@ def main():
         conditions = ["--diameter", arguments.diameter, "--axes", arguments.axes, "--details", "relief"]
         draws = [figures(arguments.programs / "synth", folder, population, [*conditions, "--seed", str(k)], arguments)
                  for k in range(arguments.draws)]  # fmt: skip
-        truth = figures(arguments.programs / "synth", folder, arguments.truth, [], arguments)
+        truth = figures(arguments.programs / "synth", folder, LIBRARY / f"{arguments.truth}.astro", [], arguments)
     print(f"{'':34s}{'5 %':>9s}{'median':>9s}{'95 %':>9s}{arguments.truth:>12s}{'below':>8s}")
     for name, value in truth.items():
         drawn = np.array([draw[name] for draw in draws])
