@@ -93,6 +93,12 @@ def runs(folder):
     members = ["--members", "0:2", "--resolution", "16"]
     yield ["synth", family, *members, "-o", folder / "{member}.ply", "--manifest", folder / "set.jsonl"]
     yield ["synth", family, *members, "--predict"]
+    longer = folder / "longer.json"
+    longer.write_text(json.dumps({"format_version": 1, "length_unit": "km", "body": {
+        "type": "metaballs", "a": 2, "b": 2, "spheres": [[0, 0, 0, 0.8], [0.5, 0, 0.1, 0.7]]}}))  # fmt: skip
+    population = folder / "population.json"
+    yield ["fit_population", plain, longer, "-o", population]
+    yield ["synth", population, *mesh, "--diameter", "2"]
     yield ["fit_gabor", grey, "-o", folder / "grey.json", "--model", "auto"]
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
     yield ["fit_gabor", tiles, "-o", folder / "tile.json", "--lobes", "4"]
