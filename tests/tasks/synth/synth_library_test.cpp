@@ -4,6 +4,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
+#include "recipe/recipe_json.h"
 #include "tasks/gravity/gravity_job.h"
 #include "tasks/job/body_library.h"
 #include "tests/tasks/synth/synth_runner.h"
