@@ -98,7 +98,7 @@ void check_groups(const MetaballBody& body, const Place& place) {
   }
 }
 
-void check_donor(const Donor& donor, const Place& place) {
+void check_morph_donor(const Donor& donor, const Place& place) {
   const Place at = place.field("body");
   if (donor.body.size() != 1) at.fail("must be one body");
   check_plain_metaballs(donor.body.front(), at);
@@ -183,7 +183,7 @@ void visit_fields(FieldVisitor& v, Donor& donor) {
   v.field("turn", donor.turn, range(-360.0, 360.0));
   v.required("half_axes", donor.half_axes, kPositive);
   if (v.reading()) donor.body.emplace_back();
-  v.rule(check_donor, donor);
+  v.rule(check_morph_donor, donor);
   v.required("body", donor.body.front());
 }
 
