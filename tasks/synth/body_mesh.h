@@ -78,7 +78,7 @@ struct MeshPart {
   MeshingDevice device = MeshingDevice::kCpu;
   bool may_be_empty = false;  // a tile need not hold any of the surface
 
-  // The same part with other cells; on the CPU where the GPU lacks what these take.
+  // Returns this part with other cells; it is meshed on the CPU where the GPU lacks what they take.
   MeshPart with_cells(int cells) const;
 };
 
