@@ -260,28 +260,6 @@ std::vector<double> signed_distances(const Nodes& nodes, const Points& points, c
   return s;
 }
 
-// Replaces values at nodes by the coefficients of the cubic B-spline that interpolates them, along one axis
-// (Unser, Splines: a perfect fit, 1999, box 2). The ends are mirrored.
-void interpolate_along(std::size_t axis, const Nodes& nodes, std::vector<double>& values) {
-  const double pole = std::sqrt(3.0) - 2.0;
-  constexpr int kHorizon = 24;  // pole^24 is below 2e-14
-  const std::size_t step = static_cast<std::size_t>(nodes.steps()[axis]);
-  const auto n = static_cast<std::size_t>(nodes.count[axis]);
-  const auto filter = [&](double* c) {
-    double sum = c[0], power = pole;
-    for (std::size_t i = 1; i < std::min<std::size_t>(n, kHorizon); ++i, power *= pole)
-      sum += power * c[i * step];
-    c[0] = sum;
-    for (std::size_t i = 1; i < n; ++i) c[i * step] += pole * c[(i - 1) * step];
-    c[(n - 1) * step] = pole / (pole * pole - 1.0) * (c[(n - 1) * step] + pole * c[(n - 2) * step]);
-    for (std::size_t i = n - 1; i-- > 0;) c[i * step] = pole * (c[(i + 1) * step] - c[i * step]);
-    for (std::size_t i = 0; i < n; ++i) c[i * step] *= 6.0;
-  };
-  for (std::size_t number = 0; number < nodes.size(); ++number) {
-    if (number / step % n == 0) filter(values.data() + number);
-  }
-}
-
 void check_domain(const Nodes& nodes, const std::vector<double>& values) {
   for (std::size_t number = 0; number < values.size(); ++number) {
     bool at_end = false;
@@ -329,7 +307,6 @@ SplineGrid make_morph_grid(const Morph& morph, ArrayStore& arrays) {
   const Nodes nodes = nodes_around(morph.half_axes);
   std::vector<double> values = blended_distances(morph, nodes);
   check_domain(nodes, values);
-  for (std::size_t axis = 0; axis < 3; ++axis) interpolate_along(axis, nodes, values);
   std::vector<float> coefficients(values.size());
   std::transform(values.begin(), values.end(), coefficients.begin(),
                  [](double v) { return static_cast<float>(v); });

@@ -5,7 +5,10 @@
 // surface is the first-order distance of its metaballs at the nodes beside the surface. Every other node has
 // its distance to the foot of the nearest such node, as sweeps over the grid carry it on (Danielsson,
 // Euclidean distance mapping, 1980). The ellipsoid's distance e is found in the same way, so that both agree
-// deep inside. The coefficients of the spline make it interpolate the sum of recipe/body.h at the nodes.
+// deep inside. The sum of recipe/body.h at the nodes is the coefficients of the spline, which is the sum
+// smoothed over 1/sqrt(3) of a spacing along each axis. A spline through the sum itself has knobs as large as
+// a cell where donors are thin, since distances have kinks on the medial axis and a roughness above 1 makes
+// them steeper.
 #pragma once
 
 #include "numerics/arrays.h"

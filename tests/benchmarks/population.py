@@ -12,6 +12,8 @@ fit_population makes the population of them (some 15 seconds of the processor fo
   calibration  20 draws with a body's axis ratios (5 %) alone: the share of features within the central 90 % of the draws, and
                the bodies that are not the farthest of the 21 from the other 20, by Mahalanobis distance
   source       the same with the kind of source given too
+  surfaces     bodies drawn near one of the library, as large, with the ground that `synth` lays: whether `compare --realism`
+               takes their surface for that of the model of the body whose ground it is, and roughness by scale over its own
   topology     of all these draws, those in one piece without handles, and how many attempts they took
   cost         seconds of the processor for a body of 20,000 triangles with one thread, and bytes of its recipe
 
@@ -28,11 +30,13 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from measure import Run, arguments_of, head, row
 
-ROWS = "likeness", "calibration", "source", "topology", "cost"
+ROWS = "likeness", "calibration", "source", "surfaces", "topology", "cost"
 BENDING = [f"{what} of bending at {scale}" for scale in (".25", ".5") for what in ("mean", "spread", "skew", "most")]
 NAMES = "b/a", "c/b", "hull", "area", "farthest", "nearest", "tilt", "most tilt", *BENDING
 SAMPLES, TESTED, REACH = 24000, 6000, 0.1  # samples of a surface, those that have features, radius of their average
 AXES_DEVIATION, TRIANGLES, TIMED = 0.05, 20000, 10
+LIBRARY = pathlib.Path(__file__).parents[2] / "library/bodies.json"
+LEAST_FACETS = 20000  # of models whose surfaces are compared
 
 
 def read_ply(path):
@@ -214,12 +218,41 @@ def calibration(draws, shapes, judged, with_source):
     row("all", "", f"{numpy.mean(within):.2f}", f"{jointly} of {len(judged)} bodies within", "")
 
 
+def surfaces(bin, folder, models):
+    head("near", "donors", "ground", "passes", "largest distance", "p", "roughness by scale, over the model's")
+    passed, bands = [], []
+    for seed, measured in enumerate(json.loads(LIBRARY.read_text())["bodies"]):
+        name, metres = measured["name"], 1000 * measured["mean_diameter_km"]
+        facets = name in models and len(read_ply(models[name])[1])
+        if not facets or facets < LEAST_FACETS:
+            continue
+        drawn, said = folder / f"near_{name}.ply", folder / f"near_{name}.json"
+        Run(bin / "synth", "asteroids", "--near", name, "--diameter", f"{metres:.6g}", "--seed", seed, "--triangles", facets,
+            "--even", "-o", drawn, "--summary", said, "--quiet")  # fmt: skip
+        body = json.loads(said.read_text())["drawn_body"]
+        found = Run(bin / "compare", models[body["ground"]], drawn, "--realism", "--json", "--quiet").json()["realism"]
+        donors = ", ".join(f"{donor['name']} {donor['share']:.0%}" for donor in body["donors"])
+        ratios = [band["ratio"] for band in found["bands"]]
+        row(name, donors, body["ground"], found["passes"], f"{found['largest_distance']:.3f}", f"{found['p']:.3f}",
+            " ".join(f"{ratio:.2f}" for ratio in ratios))  # fmt: skip
+        passed.append(found["passes"])
+        bands.append(ratios)
+    most = max(map(len, bands))
+    medians = [numpy.median([ratios[k] for ratios in bands if k < len(ratios)]) for k in range(most)]
+    row("all", "", "", f"{sum(passed)} of {len(passed)}", "", "", " ".join(f"{m:.2f}" for m in medians))
+
+
 def main():
     arguments = arguments_of(__doc__, "bin", "folder", population="", draws=60, splits=4, judged=16,
                              only={"nargs": "+", "choices": ROWS, "default": ROWS})  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         files = sorted(arguments.folder.glob("*.ply"), key=lambda file: file.stat().st_size)
         models = {file.stem.split("_")[0]: file for file in files if "DEFECT" not in file.stem}
+        if "surfaces" in arguments.only:
+            print("surfaces")
+            surfaces(arguments.bin, pathlib.Path(folder), models)
+        if arguments.only == ["surfaces"]:
+            return
         made = pathlib.Path(arguments.population or folder + "/population.json")
         if not arguments.population:
             Run(arguments.bin / "fit_population", *models.values(), "-o", made)

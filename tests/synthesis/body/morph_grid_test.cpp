@@ -65,7 +65,8 @@ TEST(MorphGrid, OfBallsIsTheEllipsoid) {
     const Vec3d u = testing::random_direction(random);
     const Vec3d on{axes.x * u.x, axes.y * u.y, axes.z * u.z};
     const Vec3d n = normalized(Vec3d{u.x / axes.x, u.y / axes.y, u.z / axes.z});
-    EXPECT_NEAR(sample(lone, on).s, 0.0, 2e-3);
+    // The spline adds spacing^2 / 6 times the Laplacian of the distance, up to 2.1 at the long end.
+    EXPECT_NEAR(sample(lone, on).s, 0.0, 1e-2);
     EXPECT_NEAR(sample(lone, on + 0.2 * n).s, -0.2, 0.01);
     EXPECT_NEAR(sample(lone, on - 0.2 * n).s, 0.2, 0.02);
   }
