@@ -16,6 +16,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/finish/lay_on_base.h"
 
 namespace astrolith {
 namespace {
@@ -282,5 +283,31 @@ class PopulationDraw {
 }  // namespace
 
 DrawnBody draw_body(const Recipe& recipe) { return PopulationDraw(recipe).draw(); }
+
+const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population) {
+  const MeasuredBody* best = nullptr;
+  double least = 0.0;
+  for (const MeasuredBody& body : population.bodies) {
+    if (body.recipe.empty()) continue;
+    // The logarithm of the ratio of the diameters, one for another class, one for a model that is no
+    // camera's.
+    const double unlike = std::fabs(portable::log(body.diameter / drawn.diameter)) +
+                          (body.kind != drawn.kind) + (body.source != ShapeSource::kCamera);
+    if (best == nullptr || unlike < least) best = &body, least = unlike;
+  }
+  return best;
+}
+
+Recipe lay_ground(const DrawnBody& drawn, const MeasuredBody& measured, const Recipe& donor,
+                  const std::string& donor_name) {
+  for (const Layer& layer : donor.layers) {
+    if (!donor.body || !std::holds_alternative<ReliefLayer>(layer)) continue;
+    const double ratio = drawn.diameter * measured.unit / measured.diameter;
+    Recipe recipe = drawn.recipe;
+    recipe.layers.insert(recipe.layers.begin(), rescaled(drawn_from(*donor.body, layer), ratio));
+    return recipe;
+  }
+  throw InputError(donor_name + ": holds no relief, which the population says it has; fit it anew");
+}
 
 }  // namespace astrolith

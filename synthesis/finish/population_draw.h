@@ -1,6 +1,7 @@
 // Bodies that nobody has seen, drawn from a population of measured ones.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "recipe/recipe.h"
@@ -32,5 +33,16 @@ struct DrawnBody {
 // Its centre of mass is the origin, its longest axis about x and its shortest about z. Throws InputError,
 // "population: draw: ...", where fewer than two bodies fulfil the conditions.
 DrawnBody draw_body(const Recipe& recipe);
+
+// The measured body whose ground a drawn one gets, or null where no body of the population has a relief. It
+// is the most alike in size and class. A body that a camera measured is preferred, since other models are
+// smoother.
+const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population);
+
+// The drawn recipe with the relief of the measured body below its other layers, laid as a likeness and as
+// large in shares of the diameter. `donor` is the whole recipe of the measured body. Throws InputError, which
+// names it by `donor_name`, where it holds no relief.
+Recipe lay_ground(const DrawnBody& drawn, const MeasuredBody& measured, const Recipe& donor,
+                  const std::string& donor_name);
 
 }  // namespace astrolith

@@ -4,16 +4,13 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "numerics/errors.h"
 #include "numerics/length_unit.h"
-#include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/known_population.h"
-#include "synthesis/finish/lay_on_base.h"
 #include "tasks/job/body_library.h"
 #include "tasks/job/load_recipe.h"
 #include "tasks/synth/finish.h"
@@ -72,34 +69,6 @@ void set_word(const std::string& text, const T (&values)[n], std::string_view (*
   for (const T candidate : values) {
     if (word_of(candidate) == text) value = candidate;
   }
-}
-
-// The measured body with a relief that is most like a drawn one, or null: the logarithm of the ratio of their
-// diameters counts, and one more for another class and for a model that is no camera's, which is smoother.
-const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population) {
-  const MeasuredBody* best = nullptr;
-  double least = 0.0;
-  for (const MeasuredBody& body : population.bodies) {
-    if (body.recipe.empty()) continue;
-    const double unlike = std::fabs(portable::log(body.diameter / drawn.diameter)) +
-                          (body.kind != drawn.kind) + (body.source != ShapeSource::kCamera);
-    if (best == nullptr || unlike < least) best = &body, least = unlike;
-  }
-  return best;
-}
-
-// Lays the relief of a measured body on a drawn one, as a share of their diameters.
-void lay_relief(const MeasuredBody& measured, const DrawnBody& drawn, const std::filesystem::path& file,
-                Recipe& recipe) {
-  const std::filesystem::path donor_file = find_body(file).parent_path() / measured.recipe;
-  const Recipe donor = load_recipe(donor_file);
-  for (const Layer& layer : donor.layers) {
-    if (!donor.body || !std::holds_alternative<ReliefLayer>(layer)) continue;
-    const double ratio = drawn.diameter * measured.unit / measured.diameter;
-    recipe.layers.insert(recipe.layers.begin(), rescaled(drawn_from(*donor.body, layer), ratio));
-    return;
-  }
-  throw InputError(donor_file.string() + ": holds no relief, which the population says it has; fit it anew");
 }
 
 // The known body whose landforms lie on one of this size (metres) and class.
@@ -167,7 +136,8 @@ Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& mem
   }
   job.summary["drawn_body"]["ground"] = donor == nullptr ? "" : donor->name;
   if (donor != nullptr) {
-    lay_relief(*donor, *member.body, file, recipe);
+    const std::filesystem::path donor_file = find_body(file).parent_path() / donor->recipe;
+    recipe = lay_ground(*member.body, *donor, load_recipe(donor_file), donor_file.string());
     job.say("ground of " + donor->name);
   }
   if (options.details == "relief" || options.details == "auto") return recipe;

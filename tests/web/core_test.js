@@ -86,6 +86,41 @@ function testHostileRecipes(core) {
   console.log(`damaged recipes: ${refused} refused in the words of synth, ${made} made as it makes them`);
 }
 
+// Bodies drawn from the library's population have the recipe of synth, or its message. The first has its mesh, too.
+function testDraws(core) {
+  const library = path.join(__dirname, "../../library");
+  const bytes = fs.readFileSync(path.join(library, "populations/asteroids.astro"));
+  const bodies = Object.fromEntries(fs.readdirSync(library).filter(file => file.endsWith(".astro"))
+    .map(file => [file, fs.readFileSync(path.join(library, file))]));
+  const population = JSON.parse(Buffer.from(core.writeRecipe(bytes, "asteroids", "json").bytes));
+  const draws = [
+    [7, {class: "top", diameter: 330}, ["--class", "top", "--diameter", "330"]],
+    [1, {}, []],
+    [12345678901, {axes: [1, 0.8, 0.5]}, ["--axes", "1:0.8:0.5"]],
+    [2, {axes: [1, 0.1, 0.05]}, ["--axes", "1:0.1:0.05"]],
+    [3, {axes: [0.5, 1, 1]}, ["--axes", "0.5:1:1"]],
+  ];
+  let drawn = 0;
+  draws.forEach(([seed, draw, conditions], number) => {
+    const mesh = number === 0, document = {...population, seed, population: {...population.population, draw}};
+    const names = mesh ? ["new.astro", "new.ply"] : ["new.astro"];
+    const right = runSynth("asteroids", names, ["--seed", seed, ...conditions, "--write-recipe", "new.astro",
+      ...(mesh ? ["-o", "new.ply", "--resolution", cells] : [])]);
+    const got = runCore(() => {
+      const recipe = core.draw(Buffer.from(JSON.stringify(document)), "asteroids", bodies).bytes;
+      const files = [core.writeRecipe(recipe, "new.json", "astro").bytes];
+      if (!mesh) return files;
+      core.make(recipe, "new.json", Number(cells));
+      return [...files, core.writeMesh("ply").bytes];
+    });
+    check(got.status === right.status && got.message === right.message, `draw ${number}: ${got.status} ${got.message}\n  synth: ${right.status} ${right.message}`);
+    if (got.status !== 0 || right.status !== 0) return;
+    if (check(got.files.every((file, i) => sha256(file) === sha256(right.files[i])), `draw ${number}: another body than synth's`)) ++drawn;
+  });
+  check(drawn === 3, `${drawn} of 3 bodies drawn as synth draws them`);
+  console.log(`draws: ${drawn} bodies with the bytes of synth, ${draws.length - 3} refused in its words`);
+}
+
 // A host that says no stops the work, and the core goes on to the next call.
 async function testStop() {
   let calls = 0, stops = true;
@@ -101,6 +136,7 @@ async function main() {
   const core = await loadCore(coreFolder);
   testExamples(core);
   testHostileRecipes(core);
+  testDraws(core);
   await testStop();
   fs.rmSync(folder, {recursive: true});
   process.exit(failures > 0 ? 1 : 0);

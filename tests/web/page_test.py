@@ -75,6 +75,11 @@ class Page:
             "const done = arguments[0]; window.astrolith.meshFile('ply').then(file => done(file.sha256), error => done(String(error)))"
         )
 
+    def recipe_hash(self):
+        return self.driver.execute_async_script(
+            "const done = arguments[0]; window.astrolith.recipeFile('astro').then(file => done(file.sha256), error => done(String(error)))"
+        )
+
     def set_cells(self, cells):
         self.script("window.astrolith.setCells(arguments[0])", cells)
         self.settled()
@@ -112,6 +117,15 @@ class Synth:
             return digits, ran.stderr.strip().removeprefix("synth: ")
 
 
+    def draw(self, seed, *conditions):
+        """The hashes of the mesh and of the compact recipe that synth draws."""
+        with tempfile.TemporaryDirectory() as folder:
+            files = [pathlib.Path(folder) / name for name in ("mesh.ply", "new.astro")]
+            subprocess.run([self.program, "asteroids", "--seed", str(seed), *conditions, "-o", files[0], "--write-recipe", files[1],
+                            "--resolution", str(CELLS), "--quiet"], check=True)  # fmt: skip
+            return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files]
+
+
 def example(name):
     return (ROOT / "synthesis/examples" / name).read_text()
 
@@ -141,6 +155,37 @@ def check_library(page, synth):
     page.wait(lambda: page.recipe().get("description", "").startswith("1998 KY26"))
     page.set_cells(CELLS)
     check(page.mesh_hash() == synth.run((ROOT / "library/ky26.astro").read_bytes(), "ky26.astro")[0], "the body is not synth's")
+
+
+def check_draw(page, synth):
+    """A body that is drawn on the page is the one that synth draws; each press takes the next seed."""
+    page.script("document.getElementById('draw-class').value = 'top'")
+    page.driver.find_element(By.ID, "draw-diameter").send_keys("330")
+    seed = page.driver.find_element(By.ID, "draw-seed")
+    button = page.driver.find_element(By.CSS_SELECTOR, "#draw button")
+    button.click()
+    page.wait(lambda: page.recipe().get("seed") == 1, 120)
+    seed.clear()
+    seed.send_keys("7" + Keys.ENTER)
+    page.wait(lambda: page.recipe().get("seed") == 7, 120)
+    words = page.text("drawn")
+    check(words.startswith(page.recipe()["description"]) and "diameter 330 m" in words, f"the page says of its body {words!r}")
+    page.settled()
+    page.set_cells(CELLS)
+    mesh, recipe = synth.draw(7, "--class", "top", "--diameter", "330")
+    check(page.recipe_hash() == recipe, "the drawn recipe is not synth's")
+    check(page.mesh_hash() == mesh, "the drawn mesh is not synth's")
+    before = page.recipe()
+    page.driver.find_element(By.ID, "draw-b").send_keys("0.9")
+    button.click()
+    page.wait(lambda: "population.draw.axes: give b/a and c/a" in page.text("refusal"))
+    page.driver.find_element(By.ID, "draw-c").send_keys("0.1")
+    button.click()
+    page.wait(lambda: "asteroids: population.draw.axes: have a ratio of 10;" in page.text("refusal"), 120)
+    check(page.recipe() == before, "a draw that is refused replaces the recipe")
+    check(seed.get_attribute("value") == "8", f"of two refusals, one by the core, the seed became {seed.get_attribute('value')}")
+    page.open(example("fractal_hills.json"), "fractal_hills.json")
+    check(page.text("drawn") == "", "the words about a drawn body stay with another")
 
 
 def check_layers(page):
@@ -264,6 +309,7 @@ def main():
         check("triangles" in page.text("figures"), f"no body after the start: {page.text('figures')!r}")
         check_slider(page, synth)
         check_library(page, synth)
+        check_draw(page, synth)
         check_layers(page)
         check_refusal(page, synth)
         check_bad_files(page, synth)
@@ -275,7 +321,7 @@ def main():
     finally:
         driver.quit()
     check_phone(address)
-    print("page: slider, measured bodies, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
+    print("page: slider, measured bodies, draws, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
     return 0
 
 

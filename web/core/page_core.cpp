@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,17 +18,64 @@
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/surface_colors.h"
+#include "synthesis/finish/population_draw.h"
 #include "tasks/synth/body_mesh.h"
 
 namespace astrolith {
 namespace {
 
+bool host_goes_on(double fraction, std::string_view) { return astrolith_host_goes_on(fraction) != 0; }
+
+// A recipe in the bytes of a file; no bytes are refused as require_plain_file() refuses an empty file.
+Recipe recipe_in(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw InputError(name + ": is empty; give another file");
+  return parse_recipe(bytes, name);
+}
+
+// Refuses a recipe whose layers name files, which no page has beside it.
+void require_own_pixels(const Recipe& recipe, const std::string& name) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    const NamedImage* named = image_of(recipe.layers[i]);
+    if (named == nullptr || named->pixels != nullptr) continue;
+    throw InputError(name + ": layers[" + std::to_string(i) + "].image: " + named->image +
+                     " is a file beside the recipe, which this page cannot read; use synth");
+  }
+}
+
+Recipe body_recipe_in(std::string_view bytes, const std::string& name) {
+  Recipe recipe = recipe_in(bytes, name);
+  require_own_pixels(recipe, name);
+  require_body(recipe, name);
+  return recipe;
+}
+
+// The body that is meshed. Its field is kept for meshes of other resolutions, since morphs and reliefs take
+// seconds.
+struct MeshedBody {
+  MeshedBody(std::string_view bytes, const std::string& name)
+      : text(bytes),
+        file(name),
+        recipe(body_recipe_in(bytes, name)),
+        part(part_of_body(spec, recipe, file, false, host_goes_on, {})) {}
+  MeshedBody(const MeshedBody&) = delete;
+  MeshedBody& operator=(const MeshedBody&) = delete;
+
+  const std::string text;
+  const std::filesystem::path file;
+  const Recipe recipe;
+  const MeshSpec spec;
+  const MeshPart part;  // refers to the others
+};
+
 // What the calls have made so far.
 struct PageState {
   std::string message, figures, written, sha256;
+  std::unique_ptr<const MeshedBody> body;
   TriangleMesh mesh;
   MeshFileInfo info;
   std::vector<float> positions, normals;
+  DrawnBody drawn;
+  MeasuredBody ground;  // of the drawn body
 };
 
 PageState& state() {
@@ -51,24 +99,6 @@ int status_of(const Work& work) {
     state().message = error.what();
   }
   return 1;
-}
-
-bool host_goes_on(double fraction, std::string_view) { return astrolith_host_goes_on(fraction) != 0; }
-
-// A recipe in the bytes of a file; no bytes are refused as require_plain_file() refuses an empty file.
-Recipe recipe_in(std::string_view bytes, const std::string& name) {
-  if (bytes.empty()) throw InputError(name + ": is empty; give another file");
-  return parse_recipe(bytes, name);
-}
-
-// Refuses a recipe whose layers name files, which no page has beside it.
-void require_own_pixels(const Recipe& recipe, const std::string& name) {
-  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    const NamedImage* named = image_of(recipe.layers[i]);
-    if (named == nullptr || named->pixels != nullptr) continue;
-    throw InputError(name + ": layers[" + std::to_string(i) + "].image: " + named->image +
-                     " is a file beside the recipe, which this page cannot read; use synth");
-  }
 }
 
 MeshFileInfo info_of(const Recipe& recipe) {
@@ -104,12 +134,13 @@ std::vector<float> as_floats(const std::vector<Vec3d>& places) {
 void make(std::string_view text, const std::string& name, int resolution) {
   PageState& to = state();
   to.mesh = {};
-  const Recipe recipe = recipe_in(text, name);
-  require_own_pixels(recipe, name);
-  const std::filesystem::path file = name;
-  require_body(recipe, file);
-  const MeshSpec spec{.resolution = resolution};
-  const MeshPart part = part_of_body(spec, recipe, file, false, host_goes_on, {});
+  if (to.body == nullptr || to.body->text != text || to.body->file != name) {
+    to.body.reset();
+    to.body = std::make_unique<MeshedBody>(text, name);
+  }
+  const Recipe& recipe = to.body->recipe;
+  MeshPart part = to.body->part;
+  part.resolution = resolution;
   MeshCollector collector;
   const BodyMeshReport made =
       make_body_mesh(part, collector, [](const std::string&) { return host_goes_on; });
@@ -147,6 +178,25 @@ void write_recipe_anew(std::string_view text, const std::string& name, const std
   keep_written(format == "astro" ? recipe_to_compact(recipe) : recipe_to_json(recipe));
 }
 
+void draw(std::string_view text, const std::string& name) {
+  PageState& to = state();
+  const Recipe recipe = recipe_in(text, name);
+  if (!recipe.population) throw InputError(name + ": population: absent; fit_population writes one");
+  to.drawn = draw_body(recipe);
+  const MeasuredBody* const ground = ground_donor(to.drawn, *recipe.population);
+  to.ground = ground == nullptr ? MeasuredBody() : *ground;
+  to.figures = nlohmann::ordered_json{{"diameter", to.drawn.diameter},
+                                      {"class", std::string(class_word(to.drawn.kind))},
+                                      {"ground", to.ground.recipe}}
+                   .dump();
+  keep_written(recipe_to_json(to.drawn.recipe));
+}
+
+void lay_ground_of(std::string_view text, const std::string& name) {
+  const PageState& from = state();
+  keep_written(recipe_to_json(lay_ground(from.drawn, from.ground, recipe_in(text, name), name)));
+}
+
 }  // namespace
 }  // namespace astrolith
 
@@ -173,6 +223,12 @@ int astrolith_write_mesh(const char* format) {
 }
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format) {
   return astrolith::status_of([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
+}
+int astrolith_draw(const char* recipe, std::size_t bytes, const char* name) {
+  return astrolith::status_of([&] { astrolith::draw({recipe, bytes}, name); });
+}
+int astrolith_lay_ground(const char* recipe, std::size_t bytes, const char* name) {
+  return astrolith::status_of([&] { astrolith::lay_ground_of({recipe, bytes}, name); });
 }
 const char* astrolith_bytes() { return state().written.data(); }
 std::size_t astrolith_byte_count() { return state().written.size(); }

@@ -13,13 +13,14 @@ int astrolith_host_goes_on(double fraction);
 
 // Makes the mesh of a recipe (JSON or compact) with so many cells along its longest side. `name` is the name
 // of the recipe's file in messages. Returns 0 when it is done, 1 when the work failed, 2 when the recipe is
-// wrong: the exit status of synth.
+// wrong: the exit status of synth. A body that is meshed again with other cells takes little more than its
+// mesh.
 int astrolith_make(const char* recipe, std::size_t bytes, const char* name, int resolution);
 
 // One line; empty after a success.
 const char* astrolith_message(void);
 
-// The figures of the mesh as JSON, with the names that synth's --summary has.
+// The figures of the mesh or the draw as JSON, with the names that synth's --summary has.
 const char* astrolith_figures(void);
 
 // The vertices as they are written into files: positions (#V x 3, the recipe's unit), unit normals (#V x 3),
@@ -36,6 +37,15 @@ std::size_t astrolith_triangle_count(void);
 int astrolith_write_mesh(const char* format);
 // The recipe written anew: "json" with every field, or "astro". Returns a status, as astrolith_make() does.
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format);
+
+// Draws a body from the population of a recipe, under its conditions and by its seed. The figures are then
+// those of the draw: its diameter, its class, and the file of the recipe whose ground lies on it, or "". The
+// drawn recipe is written as JSON, without that ground. Returns a status, as astrolith_make() does.
+int astrolith_draw(const char* recipe, std::size_t bytes, const char* name);
+// Lays the ground on the body that was drawn last: `recipe` is the recipe that its figures name. The drawn
+// recipe is written as JSON. Returns a status, as astrolith_make() does.
+int astrolith_lay_ground(const char* recipe, std::size_t bytes, const char* name);
+
 // The bytes that were written last, and their SHA-256.
 const char* astrolith_bytes(void);
 std::size_t astrolith_byte_count(void);

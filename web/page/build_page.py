@@ -17,6 +17,7 @@ ROOT = HERE.parent.parent
 SCRIPTS = [
     "recipe_text.js",
     "edited_recipe.js",
+    "drawn_body.js",
     "schema_values.js",
     "schema_form.js",
     "core_client.js",
@@ -36,6 +37,11 @@ def library():
     return [{"name": file.stem + ".json", "bytes": base64.b64encode(file.read_bytes()).decode()} for file in files]
 
 
+def population():
+    """The measured bodies that new ones are drawn between, a compact recipe in base 64."""
+    return base64.b64encode((ROOT / "library/populations/asteroids.astro").read_bytes()).decode()
+
+
 def constants(core):
     worker = [core / "astrolith_core.js", HERE / "core_calls.js", HERE / "core_worker.js"]
     page = {
@@ -43,6 +49,7 @@ def constants(core):
         "core": base64.b64encode((core / "astrolith_core.wasm").read_bytes()).decode(),
         "schema": json.loads((ROOT / "recipe/recipe.schema.json").read_text()),
         "examples": examples() + library(),
+        "population": population(),
         "first": FIRST,
     }
     return "const PAGE = " + json.dumps(page) + ";"

@@ -47,6 +47,12 @@ function coreCalls(module) {
     };
   }
 
+  // A call on the bytes of a recipe's file and its name in messages, and what it wrote.
+  function drawnBy(work, recipe, name) {
+    require(withBytes(recipe, r => withText(name, n => work(r, recipe.length, n))));
+    return {...written(), figures: JSON.parse(textAt(module._astrolith_figures()))};
+  }
+
   return {
     version: () => textAt(module._astrolith_version()),
     // `recipe` is the bytes of a file, `name` its name in messages.
@@ -62,6 +68,12 @@ function coreCalls(module) {
       require(withBytes(recipe, r => withText(name, n => withText(format,
         f => module._astrolith_write_recipe(r, recipe.length, n, f)))));
       return written();
+    },
+    // A body drawn from the recipe's population, with the ground of a measured one: {bytes, sha256, figures}. `library` has the
+    // bytes of measured bodies' recipes by the names of their files.
+    draw(recipe, name, library) {
+      const drawn = drawnBy(module._astrolith_draw, recipe, name), ground = drawn.figures.ground.replace(/.*\//, "");
+      return ground ? drawnBy(module._astrolith_lay_ground, library[ground], ground) : drawn;
     },
   };
 }

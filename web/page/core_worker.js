@@ -31,6 +31,7 @@ const calls = {
     return core.writeMesh(format);
   },
   writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
+  draw: (core, recipe, name, library) => core.draw(recipe, name, library),
   version: core => core.version(),
 };
 

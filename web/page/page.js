@@ -1,9 +1,10 @@
-// The page: what its controls do. PAGE holds what the build takes into it: {worker, core, schema, examples}.
+// The page: what its controls do. PAGE holds what the build takes into it: {worker, core, schema, examples, population, first}.
 (async function () {
   "use strict";
   const at = id => document.getElementById(id);
   const COARSE = [12, 16, 24, 32, 48];  // cells of a mesh while something moves
   const REST_MS = 250;                  // after which a finer mesh is made
+  const SILENT_MS = 300;                // after which the bar says that work goes on
   const LONGEST_LINK = 500000;          // characters; browsers take addresses of one or two million
 
   const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
@@ -56,9 +57,14 @@
     ++working;
     at("stop").disabled = false;
     client.onfraction = fraction => { at("work").hidden = false; at("work").value = fraction; };
+    const silent = setTimeout(() => {  // fractions come late where a morph or a relief is prepared
+      if (at("work").hidden) at("work").removeAttribute("value");
+      at("work").hidden = false;
+    }, SILENT_MS);
     try {
       return await work;
     } finally {
+      clearTimeout(silent);
       if (--working === 0) at("work").hidden = at("stop").disabled = true;
     }
   }
@@ -145,7 +151,15 @@
 
   // -- recipes ------------------------------------------------------------------------------------------------------------
 
-  let opened = 0;  // how many times the user opened something
+  let opened = 0;         // how many times the user opened something
+  let drawsBody = false;  // whether one is drawn from the population
+
+  // Ends the meshes of what is open, and the draw of a body.
+  async function stopped() {
+    wanted = false;
+    if (drawing || drawsBody) client.stop("replaced");
+    await settled();
+  }
 
   // The document in the bytes of a file. The core reads it first, and refuses what is no recipe. The fields that a JSON recipe
   // leaves out stay out.
@@ -156,12 +170,10 @@
   }
 
   // Opens the bytes of a file, given or promised. One that holds no recipe leaves the page as it is, but for the message; of
-  // several that are opened at once the last counts.
-  async function openBytes(given, name) {
+  // several that are opened at once the last counts. `words` tell of a drawn body.
+  async function openBytes(given, name, words = "") {
     const number = ++opened;
-    wanted = false;
-    if (drawing) client.stop("replaced");
-    await settled();
+    await stopped();
     let read;
     try {
       read = await documentOf(await given, name);
@@ -171,6 +183,7 @@
     }
     if (number !== opened) return false;
     recipe = new EditedRecipe(read, name.replace(/\.astro$/, ".json"));
+    at("drawn").textContent = words;
     at("examples").value = PAGE.examples.some(example => example.name === recipe.name) ? recipe.name : "";
     ["layers", "layers[0]"].forEach(form.open);
     if (view) view.refit();
@@ -204,6 +217,26 @@
     event.preventDefault();
     document.body.classList.remove("dropping");
     if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+  };
+
+  // A body that nobody has seen, from the population.
+  const body = drawnBody(at, PAGE.schema, () => documentOf(bytesOf(PAGE.population), "asteroids"));
+  const measured = () => Object.fromEntries(PAGE.examples.filter(({bytes}) => bytes !== undefined)
+    .map(({name, bytes}) => [name.replace(".json", ".astro"), bytesOf(bytes)]));
+
+  async function drawNext() {
+    const number = ++opened;
+    await stopped();
+    const {text, name} = await body.next();
+    if (number !== opened) return;
+    drawsBody = true;
+    const drawn = await waitedFor(client.call("draw", encoded(text), "asteroids", measured())).finally(() => { drawsBody = false; });
+    const document = recipeText.read(new TextDecoder().decode(drawn.bytes));
+    if (number === opened) await openBytes(drawn.bytes, name, body.words(document, drawn.figures));
+  }
+  at("draw").onsubmit = event => {
+    event.preventDefault();
+    drawNext().catch(refuse);
   };
 
   function step(back) {
@@ -287,7 +320,7 @@
     tellCells();
     return draw();
   };
-  window.astrolith = {openText, settled, meshFile, recipeText: () => recipe.text(), link, setCells};
+  window.astrolith = {openText, settled, meshFile, recipeFile, recipeText: () => recipe.text(), link, setCells};
 
   async function openLink(code) {
     let bytes;
