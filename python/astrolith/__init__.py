@@ -33,6 +33,7 @@ from astrolith.synthesis import (
     compare,
     describe,
     describe_surface,
+    draw,
     gravity,
     height_map,
     library,

@@ -246,6 +246,16 @@ def test_the_synthesis_module_links_nothing_of_the_fits():
     assert not [name for name in ("fftw", "ceres", "opencv", "nlopt", "cholmod") if name in linked]
 
 
+def test_a_body_is_drawn_from_the_population_of_the_library(ball):
+    drawn = astrolith.draw("asteroids", seed=7, diameter="330", class_="top", details="none")
+    assert drawn.body.type == "morph" and drawn.seed == 7
+    assert astrolith.draw("asteroids", seed=7, diameter="330", class_="top", details="none") == drawn
+    volume = astrolith.mesh(drawn, resolution=48).volume
+    assert (6 * volume / np.pi) ** (1 / 3) == pytest.approx(330, rel=0.01)
+    with pytest.raises(ValueError, match="has no population"):
+        astrolith.draw(ball, diameter="330")
+
+
 def test_a_finished_recipe_has_the_landforms_of_a_known_body(ball):
     asteroid = ball.copy()
     asteroid.body.spheres = [[0.0, 0.0, 0.0, 180.0]]
