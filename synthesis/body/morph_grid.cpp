@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,24 @@ struct Nodes {
       }
     }
     return all;
+  }
+  // The numbers of all nodes, block after block of neighbours: few metaballs reach the points of a block.
+  std::vector<std::size_t> by_blocks() const {
+    constexpr int kSide = 6;
+    std::vector<std::size_t> numbers;
+    const auto end = [&](int begin, int axis) { return std::min(begin + kSide, count[axis]); };
+    for (int k0 = 0; k0 < count[2]; k0 += kSide) {
+      for (int j0 = 0; j0 < count[1]; j0 += kSide) {
+        for (int i0 = 0; i0 < count[0]; i0 += kSide) {
+          for (int k = k0; k < end(k0, 2); ++k) {
+            for (int j = j0; j < end(j0, 1); ++j) {
+              for (int i = i0; i < end(i0, 0); ++i) numbers.push_back(number({i, j, k}));
+            }
+          }
+        }
+      }
+    }
+    return numbers;
   }
   std::size_t number(const Index& i) const {
     return static_cast<std::size_t>(i[0] +
@@ -98,28 +117,31 @@ using Surface = std::function<Levels(const Points&)>;
 // The metaballs of a donor in the frame of the morph.
 class DonorSurface {
  public:
-  DonorSurface(const Donor& donor, const Vec3d& half_axes)
-      : map_(donor_from_morph(donor, half_axes)), metaballs_(prepare_metaballs(donor.body.front())) {}
+  // `numbers` are those of the points, neighbours one after another.
+  DonorSurface(const Donor& donor, const Vec3d& half_axes, const std::vector<std::size_t>& numbers)
+      : map_(donor_from_morph(donor, half_axes)),
+        metaballs_(prepare_metaballs(donor.body.front())),
+        numbers_(numbers) {}
 
   Levels operator()(const Points& points) const {
     Levels levels(points.size());
     const std::size_t chunks = (points.size() + kChunk - 1) / kChunk;
     parallel_for(0, static_cast<std::int64_t>(chunks), [&](std::int64_t chunk) {
       const std::size_t begin = static_cast<std::size_t>(chunk) * kChunk;
-      evaluate(points, begin, std::min(begin + kChunk, points.size()), levels);
+      evaluate(points, std::span(numbers_).subspan(begin, std::min(kChunk, points.size() - begin)), levels);
     });
     return levels;
   }
 
  private:
-  static constexpr std::size_t kChunk = 256;
+  static constexpr std::size_t kChunk = 216;
 
-  void evaluate(const Points& points, std::size_t begin, std::size_t end, Levels& levels) const {
+  void evaluate(const Points& points, std::span<const std::size_t> numbers, Levels& levels) const {
     std::array<float, kChunk> x, y, z, s, gx, gy, gz;
     Box box;
-    const std::size_t n = end - begin;
+    const std::size_t n = numbers.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3f q = to_float(map_(points[begin + i]));
+      const Vec3f q = to_float(map_(points[numbers[i]]));
       x[i] = q.x, y[i] = q.y, z[i] = q.z;
       box.extend({q.x, q.y, q.z});
     }
@@ -129,13 +151,14 @@ class DonorSurface {
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3d g{gx[i], gy[i], gz[i]}, pulled = map_.pull_back(g);
       const double level = double{s[i]} * std::sqrt(squared_norm(g) + floor);
-      levels[begin + i] = {level / std::sqrt(squared_norm(pulled) + kLeastSquare), normalized(pulled)};
+      levels[numbers[i]] = {level / std::sqrt(squared_norm(pulled) + kLeastSquare), normalized(pulled)};
     }
   }
   static constexpr double kLeastSquare = 1e-20;  // keeps the distance finite where no metaball reaches
 
   LinearMap map_;
   PreparedMetaballs metaballs_;
+  const std::vector<std::size_t>& numbers_;
 };
 
 Levels ellipsoid_levels(const Vec3d& half_axes, const Points& points) {
@@ -274,19 +297,20 @@ void check_domain(const Nodes& nodes, const std::vector<double>& values) {
 }
 
 // The surface of donor j in the frame of the morph, or the ellipsoid after the last donor.
-Surface surface_of(const Morph& morph, std::size_t j) {
-  if (j < morph.donors.size()) return DonorSurface(morph.donors[j], morph.half_axes);
+Surface surface_of(const Morph& morph, std::size_t j, const std::vector<std::size_t>& numbers) {
+  if (j < morph.donors.size()) return DonorSurface(morph.donors[j], morph.half_axes, numbers);
   return [&morph](const Points& points) { return ellipsoid_levels(morph.half_axes, points); };
 }
 
 // The sum of recipe/body.h at all nodes.
 std::vector<double> blended_distances(const Morph& morph, const Nodes& nodes) {
   const Points points = nodes.points();
+  const std::vector<std::size_t> numbers = nodes.by_blocks();
   const std::size_t donors = morph.donors.size();
   std::vector<std::vector<double>> s(donors + 1);  // those of the donors, then the ellipsoid's
   parallel_for(0, static_cast<std::int64_t>(s.size()), [&](std::int64_t number) {
     const auto j = static_cast<std::size_t>(number);
-    s[j] = signed_distances(nodes, points, surface_of(morph, j));
+    s[j] = signed_distances(nodes, points, surface_of(morph, j, numbers));
   });
   double squares = 0.0;
   for (const Donor& donor : morph.donors) squares += donor.share * donor.share;
