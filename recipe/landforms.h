@@ -185,10 +185,10 @@ struct BoulderLayer {
 
   std::string name;
   std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
-  double smoothing = 0.0;   // width of the joint, in half the shortest axis, [0, 1]
-  double roughness = 0.0;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
+  double smoothing = 0.1;   // width of the joint, in half the shortest axis, [0, 1]
+  double roughness = 0.1;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
   // How far facets cut into the ellipsoids: 0, not at all; 1, to three fifths of the radius. [0, 1]
-  double angularity = 0.0;
+  double angularity = 0.8;
   std::vector<Boulder> boulders;
   std::optional<BoulderPopulation> population;
   std::optional<LocalGravity> gravity;  // absent: boulders stand along the normal

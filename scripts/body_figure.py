@@ -5,6 +5,7 @@
     body_figure.py RECIPE.astro [...] -o likeness.jpg                         # recipes above others with their heights drawn anew
     body_figure.py ITOKAWA.astro --sheet 8 -o thousand.jpg                    # the first 64 seeds of one body
     body_figure.py --library 6 -o library.jpg                                 # the bodies of the library, six in a row
+    body_figure.py RECIPE.astro --zoom X Y Z --finish itokawa -o zoom.jpg     # a body, and its ground at a point ever finer
 
 Needs the Python package (build/ci/python in PYTHONPATH) and Pillow. Recipes: fit_shape SHAPE.ply -o RECIPE.astro --spheres 80
 """
@@ -23,17 +24,35 @@ def shot(body, view, triangles=1e6, size=(620, 420)):
     return astrolith.render(mesh, views=[view], width=2 * size[0], height=2 * size[1], sun=(-0.8, 0.45, 0.4))
 
 
+def zoom(recipe, place, finish, size=(620, 620)):
+    """The body, and squares of its ground about a place: each a fifth as long, with what the finish draws down to 1/250 of it."""
+    whole = astrolith.mesh(recipe, triangles=1e6)
+    normal = whole.normals[((whole.vertices - place) ** 2).sum(1).argmin()]
+    view = normal + 0.6 * np.cross(normal, (0, 0, 1))
+    shots, side = [shot(whole, view, size=size)], np.ptp(whole.vertices, 0).max() / 6
+    for _ in range(3):
+        ground = astrolith.mesh(recipe, patch=(*place, side), aligned=True, resolution=400, finish=finish, to=side / 250)
+        wide = shot(ground, view, size=(2 * size[0], 2 * size[1]))
+        shots.append(wide[size[1]:-size[1], size[0]:-size[0]])
+        side /= 5
+    return [shots[:2], shots[2:]]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*")
     parser.add_argument("--sheet", type=int, metavar="SIDE", help="a square of likenesses of the first recipe")
     parser.add_argument("--library", type=int, metavar="COLUMNS", help="a sheet of the bodies of the library")
+    parser.add_argument("--zoom", type=float, nargs=3, metavar=("X", "Y", "Z"), help="the ground at this point of the recipe")
+    parser.add_argument("--finish", default="itokawa", help="the known body whose boulders lie on that ground")
     parser.add_argument("-o", dest="output", required=True)
     given = parser.parse_args()
     recipes = [astrolith.Recipe.read(file) for file in given.files if file.endswith(".astro")]
     if given.library:
         shots = [shot(astrolith.Recipe.read(name), (1.0, 0.6, 0.5), 2e5, (250, 200)) for name in astrolith.library()]
         rows = [shots[first:first + given.library] for first in range(0, len(shots), given.library)]
+    elif given.zoom:
+        rows = zoom(recipes[0], given.zoom, given.finish)
     elif given.sheet:
         shots = [shot(recipes[0].like(seed), VIEWS[0], 4e4, (180, 120)) for seed in range(given.sheet**2)]
         rows = [shots[first:first + given.sheet] for first in range(0, len(shots), given.sheet)]

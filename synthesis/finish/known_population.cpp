@@ -211,8 +211,6 @@ Layer layer_of(const KnownLandforms& known, const Population& population, int se
     BoulderLayer layer;
     layer.name = "finish boulders";
     layer.seed = seed;
-    layer.smoothing = layer.roughness = 0.1;
-    layer.angularity = 0.8;
     layer.population.emplace().drawn = population;
     return layer;
   }

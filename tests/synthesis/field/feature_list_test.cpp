@@ -80,7 +80,7 @@ TEST(FeatureList, FineBouldersOfAPatchAreFound) {
   boulders.boulders.resize(1);
   boulders.boulders[0].place = {{1, 2, 3}, true};
   boulders.boulders[0].axes = {1e-4, 1e-4, 1e-4};
-  boulders.roughness = 0.0;
+  boulders.roughness = boulders.smoothing = boulders.angularity = 0.0;
   recipe.layers = {boulders};
   const PatchCube cube{1e4 * normalized(Vec3d{1, 2, 3}), 4e-3};
   const ImplicitField field(recipe, "recipe", cube);
@@ -100,7 +100,7 @@ TEST(FeatureList, HiddenBouldersAreNotResolved) {
     boulders.boulders.back().place = {{side == 1.6 ? -1.0 : 1.0, 0, 0}, true};
     boulders.boulders.back().axes = {side, side, side};
   }
-  boulders.roughness = 0.0;
+  boulders.roughness = boulders.smoothing = boulders.angularity = 0.0;
   recipe.layers = {boulders};
   std::vector<bool> resolved;
   const nlohmann::json list = listed(recipe, {});

@@ -20,6 +20,13 @@ Boulder boulder_towards(const Vec3d& direction, const Vec3d& axes, double burial
   return boulder;
 }
 
+// Ellipsoids without facets, noise and joints.
+BoulderLayer ellipsoids() {
+  BoulderLayer layer;
+  layer.smoothing = layer.roughness = layer.angularity = 0.0;
+  return layer;
+}
+
 Recipe with_boulders(Recipe recipe, const BoulderLayer& layer) {
   recipe.layers.emplace_back(layer);
   return recipe;
@@ -38,7 +45,7 @@ double summit(const ImplicitField& field, const Vec3d& direction, double radius)
 TEST(BoulderField, BurialSaysHowMuchIsSeen) {
   const Recipe sphere = testing::sphere_recipe(10.0);
   for (const double burial : {0.0, 0.25, 0.5, 0.9}) {
-    BoulderLayer layer;
+    BoulderLayer layer = ellipsoids();
     layer.boulders = {boulder_towards({1, 1, 0.5}, {2.0, 1.4, 1.0}, burial)};
     EXPECT_NEAR(summit(ImplicitField(with_boulders(sphere, layer)), {1, 1, 0.5}, 10.0), 1.0 - burial, 1e-3);
     layer.boulders[0].tilt = 90.0;  // axis b is upright
@@ -49,7 +56,7 @@ TEST(BoulderField, BurialSaysHowMuchIsSeen) {
 
 // No boulder hovers, however rough, tilted and shallow it is.
 TEST(BoulderField, EveryBoulderTouchesTheGround) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.roughness = 0.5;
   layer.angularity = 1.0;
   BoulderPopulation& population = layer.population.emplace();
@@ -72,7 +79,7 @@ TEST(BoulderField, EveryBoulderTouchesTheGround) {
 TEST(BoulderField, LiesOnSteepGround) {
   const BareSurface surface(bare_body(testing::sphere_recipe(10.0)));
   const Terrain steep{[](const Vec3d& p) { return 3.0 * (10.3 - norm(p)); }, 1.0};
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({1, 1, 0.5}, {0.4, 0.4, 0.4}, 0.5)};
   const std::vector<PlacedBoulder> placed = place_boulders(layer, surface, steep, 1, 0, "layers[0]");
   EXPECT_NEAR(norm(placed.at(0).center), 10.3, 1e-3);
@@ -81,7 +88,7 @@ TEST(BoulderField, LiesOnSteepGround) {
 // Facets cut into the ellipsoid, each boulder's in its own way, and leave flat ground: along most chords of
 // the surface between near directions the middle lies on it too.
 TEST(BoulderField, FacetsAreFlatAndCutIntoTheEllipsoid) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({0, 0, 1}, {2, 2, 2}, 0.0), boulder_towards({0, 1, 0}, {2, 2, 2}, 0.0)};
   layer.angularity = 1.0;
   const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
@@ -118,7 +125,7 @@ TEST(BoulderField, FacetsAreFlatAndCutIntoTheEllipsoid) {
 
 // At a place on +x, east is +y. Axis a lies along east, and with a heading of 90 along north.
 TEST(BoulderField, AxesLieAsTheHeadingSays) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({1, 0, 0}, {2.0, 1.0, 1.0}, 0.5)};
   const Recipe sphere = testing::sphere_recipe(10.0);
   const ImplicitField east(with_boulders(sphere, layer));
@@ -142,7 +149,7 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 }
 
 BoulderLayer upright_boulders() {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   BoulderPopulation& population = layer.population.emplace();
   population.drawn.count = 300;
   population.drawn.least_diameter = 0.2;
@@ -176,7 +183,7 @@ TEST(BoulderField, StandUprightInTheGravityOfAFastRotator) {
 
 // Here the centrifugal force exceeds gravity at the equator. Stones there stand along the normal.
 TEST(BoulderField, StandAlongTheNormalWhereNothingRests) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({1, 0, 0}, {1, 1, 0.5}, 0.3),
                     boulder_towards({0, 0.6, 0.8}, {1, 1, 0.5}, 0.3)};
   layer.gravity = LocalGravity{2000.0, 2.0};
@@ -190,7 +197,7 @@ TEST(BoulderField, StandAlongTheNormalWhereNothingRests) {
 TEST(BoulderField, GravityThatIsUnknownIsRefused) {
   Recipe grains = testing::sphere_recipe(0.01, {-10, 0, 0});
   grains.body->spheres.push_back({{10, 0, 0}, 0.01});
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({1, 0, 0}, {1e-3, 1e-3, 1e-3}, 0.5)};
   EXPECT_NO_THROW(ImplicitField(with_boulders(grains, layer)));
   layer.gravity.emplace();
@@ -200,7 +207,7 @@ TEST(BoulderField, GravityThatIsUnknownIsRefused) {
 // Boulders lie on the hills and in the craters of layers that come before or after them in the recipe.
 TEST(BoulderField, StandsOnTheFinalSurface) {
   Recipe recipe = testing::sphere_recipe(10.0);
-  BoulderLayer boulders;
+  BoulderLayer boulders = ellipsoids();
   boulders.boulders = {boulder_towards({0, 0, 1}, {0.6, 0.6, 0.6}, 0.5)};
   recipe.layers.emplace_back(boulders);
   CraterLayer craters;
@@ -217,7 +224,7 @@ TEST(BoulderField, StandsOnTheFinalSurface) {
 }
 
 TEST(BoulderField, UnionChangesNothingElsewhere) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.smoothing = 0.5;
   layer.roughness = 0.2;
   layer.boulders = {boulder_towards({0, 0, 1}, {2.0, 1.5, 1.0}, 0.5)};
@@ -234,7 +241,7 @@ TEST(BoulderField, UnionChangesNothingElsewhere) {
 }
 
 TEST(BoulderField, BouldersLongerThanTheBodyAreRefused) {
-  BoulderLayer layer;
+  BoulderLayer layer = ellipsoids();
   layer.boulders = {boulder_towards({0, 0, 1}, {3, 3, 3}, 0.5)};
   EXPECT_THROW(ImplicitField(with_boulders(testing::sphere_recipe(1.0), layer)), InputError);
 }
