@@ -5,6 +5,7 @@
     body_figure.py RECIPE.astro [...] -o likeness.jpg                         # recipes above others with their heights drawn anew
     body_figure.py ITOKAWA.astro --sheet 8 -o thousand.jpg                    # the first 64 seeds of one body
     body_figure.py --library 6 -o library.jpg                                 # the bodies of the library, six in a row
+    body_figure.py --draws 8 -o drawn_bodies.jpg                              # the first 48 draws of the library's population
     body_figure.py RECIPE.astro --zoom X Y Z --finish itokawa -o zoom.jpg     # a body, and its ground at a point ever finer
 
 Needs the Python package (build/ci/python in PYTHONPATH) and Pillow. Recipes: fit_shape SHAPE.ply -o RECIPE.astro --spheres 80
@@ -18,10 +19,10 @@ from PIL import Image
 VIEWS = ((0.3, -1.0, 0.5), (0.2, 1.0, 0.35), (1.0, 0.4, 0.3), (1.0, 0.3, 0.2))
 
 
-def shot(body, view, triangles=1e6, size=(620, 420)):
+def shot(body, view, triangles=1e6, size=(620, 420), sun=(-0.8, 0.45, 0.4)):
     """A body, as a recipe or a mesh, at twice the size, for smooth edges."""
     mesh = astrolith.mesh(body, triangles=triangles) if isinstance(body, astrolith.Recipe) else body
-    return astrolith.render(mesh, views=[view], width=2 * size[0], height=2 * size[1], sun=(-0.8, 0.45, 0.4))
+    return astrolith.render(mesh, views=[view], width=2 * size[0], height=2 * size[1], sun=sun)
 
 
 def zoom(recipe, place, finish, size=(620, 620)):
@@ -32,7 +33,7 @@ def zoom(recipe, place, finish, size=(620, 620)):
     shots, side = [shot(whole, view, size=size)], np.ptp(whole.vertices, 0).max() / 6
     for _ in range(3):
         ground = astrolith.mesh(recipe, patch=(*place, side), aligned=True, resolution=320, finish=finish, to=side / 100)
-        wide = shot(ground, view, size=(2 * size[0], 2 * size[1]))
+        wide = shot(ground, view, size=(2 * size[0], 2 * size[1]), sun=(-0.6, 0.5, 0.9))
         shots.append(wide[size[1]:-size[1], size[0]:-size[0]])
         side /= 5
     return [shots[:2], shots[2:]]
@@ -43,6 +44,7 @@ def main():
     parser.add_argument("files", nargs="*")
     parser.add_argument("--sheet", type=int, metavar="SIDE", help="a square of likenesses of the first recipe")
     parser.add_argument("--library", type=int, metavar="COLUMNS", help="a sheet of the bodies of the library")
+    parser.add_argument("--draws", type=int, metavar="COLUMNS", help="a sheet of 48 bodies that nobody has seen; a divisor of 48")
     parser.add_argument("--zoom", type=float, nargs=3, metavar=("X", "Y", "Z"), help="the ground at this point of the recipe")
     parser.add_argument("--finish", default="itokawa", help="the known body whose boulders lie on that ground")
     parser.add_argument("-o", dest="output", required=True)
@@ -51,6 +53,9 @@ def main():
     if given.library:
         shots = [shot(astrolith.Recipe.read(name), (1.0, 0.6, 0.5), 2e5, (250, 200)) for name in astrolith.library()]
         rows = [shots[first:first + given.library] for first in range(0, len(shots), given.library)]
+    elif given.draws:
+        shots = [shot(astrolith.draw("asteroids", seed=seed), (1.0, 0.6, 0.5), 1e5, (180, 150)) for seed in range(48)]
+        rows = [shots[first:first + given.draws] for first in range(0, len(shots), given.draws)]
     elif given.zoom:
         rows = zoom(recipes[0], given.zoom, given.finish)
     elif given.sheet:
