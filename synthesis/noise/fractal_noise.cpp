@@ -40,19 +40,25 @@ void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves
   }
 }
 
-void evaluate_chunk(const FractalNoise& noise, const ArrayView& arrays, int n, const float* x, const float* y,
-                    const float* z, float* height) {
-  Chunk wx, wy, wz, qx, qy, qz;
-  if (noise.warped) {
-    warp_points(noise.warp, arrays, n, x, y, z, wx.data(), wy.data(), wz.data());
-    x = wx.data();
-    y = wy.data();
-    z = wz.data();
+// Writes the heights of a noise with these octaves.
+void evaluate_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves,
+                      const ArrayView& arrays, int count, const float* x, const float* y, const float* z,
+                      float* height) {
+  for (int begin = 0; begin < count; begin += kFractalChunk) {
+    const int n = std::min(kFractalChunk, count - begin);
+    Chunk wx, wy, wz, qx, qy, qz;
+    const float *px = x + begin, *py = y + begin, *pz = z + begin;
+    if (noise.warped) {
+      warp_points(noise.warp, arrays, n, px, py, pz, wx.data(), wy.data(), wz.data());
+      px = wx.data();
+      py = wy.data();
+      pz = wz.data();
+    }
+    place(n, px, noise.low.x, noise.high.x, noise.scale.x, noise.bias.x, qx.data());
+    place(n, py, noise.low.y, noise.high.y, noise.scale.y, noise.bias.y, qy.data());
+    place(n, pz, noise.low.z, noise.high.z, noise.scale.z, noise.bias.z, qz.data());
+    sum_octaves(noise, octaves, n, qx.data(), qy.data(), qz.data(), height + begin);
   }
-  place(n, x, noise.low.x, noise.high.x, noise.scale.x, noise.bias.x, qx.data());
-  place(n, y, noise.low.y, noise.high.y, noise.scale.y, noise.bias.y, qy.data());
-  place(n, z, noise.low.z, noise.high.z, noise.scale.z, noise.bias.z, qz.data());
-  sum_octaves(noise, arrays.span(noise.octaves), n, qx.data(), qy.data(), qz.data(), height);
 }
 
 // The argument of the noise at a point.
@@ -108,15 +114,10 @@ FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer
 
 void evaluate_heights(const FractalNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
-  for (int begin = 0; begin < count; begin += kFractalChunk) {
-    evaluate_chunk(noise, arrays, std::min(kFractalChunk, count - begin), x + begin, y + begin, z + begin,
-                   height + begin);
-  }
+  evaluate_octaves(noise, arrays.span(noise.octaves), arrays, count, x, y, z, height);
 }
 
 namespace {
-
-constexpr float kEverywhere = std::numeric_limits<float>::max();
 
 // The octaves of a noise relative to an origin.
 std::vector<NoiseOctave> octaves_at(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin) {
@@ -124,28 +125,26 @@ std::vector<NoiseOctave> octaves_at(const FractalNoise& noise, const ArrayView& 
   return local_octaves(noise.noise, arrays.span(noise.octaves), placed(noise, bias, origin));
 }
 
+// A noise without its bias and its domain, which octaves_at() do not have.
+FractalNoise unplaced(FractalNoise noise) {
+  constexpr float kEverywhere = std::numeric_limits<float>::max();
+  noise.bias = {};
+  noise.low = {-kEverywhere, -kEverywhere, -kEverywhere};
+  noise.high = {kEverywhere, kEverywhere, kEverywhere};
+  return noise;
+}
+
 }  // namespace
 
 FractalNoise local_form(const FractalNoise& noise, const Vec3d& origin, ArrayStore& arrays) {
-  FractalNoise local = noise;
+  FractalNoise local = unplaced(noise);
   local.octaves = arrays.add(octaves_at(noise, arrays.view(), origin));
-  local.bias = {};
-  local.low = {-kEverywhere, -kEverywhere, -kEverywhere};
-  local.high = {kEverywhere, kEverywhere, kEverywhere};
   return local;
 }
 
 void evaluate_local_heights(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin,
                             int count, const float* x, const float* y, const float* z, float* height) {
-  const std::vector<NoiseOctave> octaves = octaves_at(noise, arrays, origin);
-  for (int begin = 0; begin < count; begin += kFractalChunk) {
-    const int size = std::min(kFractalChunk, count - begin);
-    Chunk qx, qy, qz;
-    place(size, x + begin, -kEverywhere, kEverywhere, noise.scale.x, 0.0f, qx.data());
-    place(size, y + begin, -kEverywhere, kEverywhere, noise.scale.y, 0.0f, qy.data());
-    place(size, z + begin, -kEverywhere, kEverywhere, noise.scale.z, 0.0f, qz.data());
-    sum_octaves(noise, octaves, size, qx.data(), qy.data(), qz.data(), height + begin);
-  }
+  evaluate_octaves(unplaced(noise), octaves_at(noise, arrays, origin), arrays, count, x, y, z, height);
 }
 
 }  // namespace astrolith

@@ -5,7 +5,6 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/noise/octave_bounds.h"
-#include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
@@ -13,40 +12,32 @@ namespace {
 constexpr double kSteepestOctave = 1e12;  // keeps the squares of slopes finite in a float
 
 // Each noise has its own loop: a choice inside the loop would keep it from vectorising.
-#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
-  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
-                                  const float* __restrict y, const float* __restrict z,        \
-                                  float* __restrict sum) {                                     \
-    const NoiseOctave o = octave;                                                              \
-    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                          \
-      sum[i] = with_octave<noise>(o, x[i], y[i], z[i], sum[i]);                                \
-    }                                                                                          \
-  }
-ASTROLITH_OCTAVE_LOOP(add_simplex, simplex_noise)
-ASTROLITH_OCTAVE_LOOP(add_perlin, perlin_noise)
-ASTROLITH_OCTAVE_LOOP(add_f1, worley_f1)
-ASTROLITH_OCTAVE_LOOP(add_f2, worley_f2)
-ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
-#undef ASTROLITH_OCTAVE_LOOP
+template <auto noise>
+ASTROLITH_SIMD_CLONES void add_noise(const NoiseOctave& octave, int n, const float* __restrict x,
+                                     const float* __restrict y, const float* __restrict z,
+                                     float* __restrict sum) {
+  const NoiseOctave o = octave;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) sum[i] = with_octave<noise>(o, x[i], y[i], z[i], sum[i]);
+}
 
-#define ASTROLITH_MODULATED_LOOP(name, noise)                                                             \
-  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, float modulation, int n,                     \
-                                  const float* __restrict x, const float* __restrict y,                   \
-                                  const float* __restrict z, float* __restrict dx, float* __restrict dy,  \
-                                  float* __restrict dz, float* __restrict sum) {                          \
-    const NoiseOctave o = octave;                                                                         \
-    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
-      const ModulatedSum s =                                                                              \
-          with_modulated_octave<noise>(o, modulation, x[i], y[i], z[i], {sum[i], {dx[i], dy[i], dz[i]}}); \
-      dx[i] = s.slope.x;                                                                                  \
-      dy[i] = s.slope.y;                                                                                  \
-      dz[i] = s.slope.z;                                                                                  \
-      sum[i] = s.value;                                                                                   \
-    }                                                                                                     \
+template <auto noise>
+ASTROLITH_SIMD_CLONES void add_modulated_noise(const NoiseOctave& octave, float modulation, int n,
+                                               const float* __restrict x, const float* __restrict y,
+                                               const float* __restrict z, float* __restrict dx,
+                                               float* __restrict dy, float* __restrict dz,
+                                               float* __restrict sum) {
+  const NoiseOctave o = octave;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const ModulatedSum s =
+        with_modulated_octave<noise>(o, modulation, x[i], y[i], z[i], {sum[i], {dx[i], dy[i], dz[i]}});
+    dx[i] = s.slope.x;
+    dy[i] = s.slope.y;
+    dz[i] = s.slope.z;
+    sum[i] = s.value;
   }
-ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
-ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)
-#undef ASTROLITH_MODULATED_LOOP
+}
 
 }  // namespace
 
@@ -119,22 +110,23 @@ void add_octave(Noise noise, const NoiseOctave& octave, int n, const float* x, c
                 float* sum) {
   switch (noise) {
     case Noise::kSimplex:
-      return add_simplex(octave, n, x, y, z, sum);
+      return add_noise<simplex_noise>(octave, n, x, y, z, sum);
     case Noise::kPerlin:
-      return add_perlin(octave, n, x, y, z, sum);
+      return add_noise<perlin_noise>(octave, n, x, y, z, sum);
     case Noise::kWorleyF1:
-      return add_f1(octave, n, x, y, z, sum);
+      return add_noise<worley_f1>(octave, n, x, y, z, sum);
     case Noise::kWorleyF2:
-      return add_f2(octave, n, x, y, z, sum);
+      return add_noise<worley_f2>(octave, n, x, y, z, sum);
     case Noise::kWorleyF2MinusF1:
-      return add_f2_minus_f1(octave, n, x, y, z, sum);
+      return add_noise<worley_f2_minus_f1>(octave, n, x, y, z, sum);
   }
 }
 
 void add_modulated_octave(Noise noise, const NoiseOctave& octave, float modulation, int n, const float* x,
                           const float* y, const float* z, float* slope_x, float* slope_y, float* slope_z,
                           float* sum) {
-  const auto add = noise == Noise::kPerlin ? add_modulated_perlin : add_modulated_simplex;
+  const auto add = noise == Noise::kPerlin ? add_modulated_noise<perlin_with_gradient>
+                                           : add_modulated_noise<simplex_with_gradient>;
   add(octave, modulation, n, x, y, z, slope_x, slope_y, slope_z, sum);
 }
 

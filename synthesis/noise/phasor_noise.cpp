@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "synthesis/noise/points_in_domain.h"
-
 namespace astrolith {
 namespace {
 

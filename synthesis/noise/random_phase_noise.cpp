@@ -119,21 +119,13 @@ std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, 
   return waves;
 }
 
+// Writes the heights at n <= kPhaseChunk points of the domain.
 void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, int n, const float* x,
                     const float* y, const float* z, float* height) {
-  PhaseArray px{}, py{}, pz{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    px[i] = math::clamp(x[i], noise.low.x, noise.high.x);
-    py[i] = math::clamp(y[i], noise.low.y, noise.high.y);
-    pz[i] = math::clamp(z[i], noise.low.z, noise.high.z);
-  }
   Windows windows;
-  find_windows(n, px.data(), py.data(), pz.data(), noise.inverse_cell, noise.offset, noise.coherence,
-               noise.seed, windows);
+  find_windows(n, x, y, z, noise.inverse_cell, noise.offset, noise.coherence, noise.seed, windows);
   std::fill(height, height + n, 0.0f);
-  for (const Wave& wave : waves) {
-    add_wave(wave, noise.randomness, n, px.data(), py.data(), pz.data(), windows, height);
-  }
+  for (const Wave& wave : waves) add_wave(wave, noise.randomness, n, x, y, z, windows, height);
   for (int i = 0; i < n; ++i) {
     height[i] = math::clamp(height[i] * windows.scale[static_cast<std::size_t>(i)], -noise.clip, noise.clip);
   }
@@ -164,9 +156,10 @@ RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, i
 
 void evaluate_heights(const RandomPhaseNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
+  const PointsInDomain p(noise.low, noise.high, count, x, y, z);
   for (int begin = 0; begin < count; begin += kPhaseChunk) {
-    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kPhaseChunk, count - begin), x + begin,
-                   y + begin, z + begin, height + begin);
+    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kPhaseChunk, count - begin), p.x() + begin,
+                   p.y() + begin, p.z() + begin, height + begin);
   }
 }
 

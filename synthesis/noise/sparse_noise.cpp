@@ -12,13 +12,15 @@
 namespace astrolith {
 namespace {
 
-ASTROLITH_SIMD_CLONES void upscale(int n, const float* __restrict x, const float* __restrict y,
-                                   const float* __restrict z, const SparseLevel& sparse_level,
-                                   float probability, float inverse_probability, float* __restrict noise) {
+ASTROLITH_SIMD_CLONES void add_level(const SparseNoise& given, const SparseLevel& sparse_level, int n,
+                                     const float* __restrict x, const float* __restrict y,
+                                     const float* __restrict z, float* __restrict sum) {
   const SparseLevel level = sparse_level;
+  const float probability = given.probability, inverse = given.inverse_probability, cut = given.level_cut;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    noise[i] = sparse_noise(level, probability, inverse_probability, x[i], y[i], z[i]);
+    const float noise = sparse_noise(level, probability, inverse, x[i], y[i], z[i]);
+    sum[i] = with_sparse_level(level.gain, noise, cut, sum[i]);
   }
 }
 
@@ -60,13 +62,9 @@ SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_i
 void evaluate_heights(const SparseNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
   const PointsInDomain p(n.low, n.high, count, x, y, z);
-  std::vector<float> noise(static_cast<std::size_t>(count));
   std::fill(height, height + count, 0.0f);
   for (const SparseLevel& level : arrays.span(n.levels)) {
-    upscale(count, p.x(), p.y(), p.z(), level, n.probability, n.inverse_probability, noise.data());
-    for (int i = 0; i < count; ++i) {
-      height[i] = with_sparse_level(level.gain, noise[static_cast<std::size_t>(i)], n.level_cut, height[i]);
-    }
+    add_level(n, level, count, p.x(), p.y(), p.z(), height);
   }
   for (int i = 0; i < count; ++i) height[i] = sparse_height(n.amplitude, height[i], n.sum_cut);
 }
