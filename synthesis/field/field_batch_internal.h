@@ -1,6 +1,7 @@
 // The points of a field that are evaluated together, and their state from layer to layer.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -14,35 +15,56 @@
 namespace astrolith {
 
 // The most points evaluated together. A block of 9^3 samples fits, and a batch fits on the stack. Arrays of a
-// power of two would lie in the same places of the caches.
+// power of two would lie in the same places of the caches. Arrays begin with a line of the cache (64 bytes),
+// so that no load of a vector crosses two lines.
 inline constexpr int kBatch = 1008;
-
-// A batch of points and their state while layer after layer is added.
-struct Batch {
-  int n = 0;                                       // number of points
-  std::array<float, kBatch> x, y, z;               // the points
-  std::array<float, kBatch> mx, my, mz;            // where the metaballs are evaluated for the points
-  std::array<float, kBatch> distance, gx, gy, gz;  // s and grad L at (mx, my, mz)
-  std::array<float, kBatch> elevation;             // elevation that the layers so far have made
-  std::array<float, kBatch> height;                // heights of the current layer
-  std::array<float, kBatch> px, py, pz;            // projections of the points on the bare surface
-  bool is_projected = false;                       // whether px, py and pz are there
-  const SpotImpulses* spots = nullptr;   // spots of the current layer that reach the points; null: not drawn
-  std::array<float, kBatch> lx, ly, lz;  // coordinates local to `origin`
-  std::array<float, kBatch> lmx, lmy, lmz;  // the same for (mx, my, mz); set for a plain body only
-  std::array<float, kBatch> lpx, lpy, lpz;  // the same for (px, py, pz)
-  bool is_locally_projected = false;        // whether lpx, lpy and lpz are there
-  const Vec3d* origin = nullptr;            // origin of local coordinates; null: there are none
-  std::array<float, kBatch> weight;         // weight of the current layer
-  bool is_displaced = false;                // whether a layer so far warps the coordinates of later layers
-  std::array<float, kBatch> dx, dy, dz;     // displacements by the layers that warp later layers
-  std::array<float, kBatch> qx, qy, qz;     // displaced coordinates
-  std::vector<std::array<float, kBatch>> kept;  // heights kept for masks, by slot
-  bool tetrahedra = false;  // whether the points are corners of tetrahedra, of which none may be left out
-};
 
 struct PointArrays {
   const float *x, *y, *z;
+};
+
+// Coordinates of the points of a batch.
+struct BatchPoints {
+  alignas(64) std::array<float, kBatch> x, y, z;
+
+  PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
+  void copy(int n, const PointArrays& from) {
+    std::copy_n(from.x, n, x.data());
+    std::copy_n(from.y, n, y.data());
+    std::copy_n(from.z, n, z.data());
+  }
+  // Makes point `from` the point `to`.
+  void move(std::size_t from, std::size_t to) { x[to] = x[from], y[to] = y[from], z[to] = z[from]; }
+};
+
+// The points of a batch in the body's frame, or in coordinates local to an origin.
+struct BatchFrame {
+  BatchPoints at;
+  BatchPoints mapped;         // where the metaballs are evaluated for them; for a plain body only if local
+  BatchPoints feet;           // their projections on the bare surface
+  bool is_projected = false;  // whether the projections are there
+};
+
+// A batch of points and their state while layer after layer is added.
+struct Batch {
+  int n = 0;                  // number of points
+  bool tetrahedra = false;    // whether the points are corners of tetrahedra, of which none may be left out
+  bool is_displaced = false;  // whether a layer so far warps the coordinates of later layers
+  const Vec3d* origin = nullptr;        // origin of local coordinates; null: there are none
+  const SpotImpulses* spots = nullptr;  // spots of the current layer that reach the points; null: not drawn
+  std::vector<std::array<float, kBatch>> kept;  // heights kept for masks, by slot
+  BatchFrame body;
+  BatchFrame local;                                // set if there is an origin
+  BatchPoints gradient;                            // grad L at the mapped points
+  BatchPoints displacement;                        // by the layers that warp later layers
+  BatchPoints displaced;                           // displaced coordinates
+  alignas(64) std::array<float, kBatch> distance;  // s at the mapped points
+  std::array<float, kBatch> elevation;             // elevation that the layers so far have made
+  std::array<float, kBatch> height;                // heights of the current layer
+  std::array<float, kBatch> weight;                // weight of the current layer
+
+  // Makes point `from` the point `to`.
+  void move(std::size_t from, std::size_t to);
 };
 
 // Points in coordinates local to an origin.

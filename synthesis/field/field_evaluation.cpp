@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "synthesis/body/local_metaballs.h"
 #include "synthesis/field/field_batch_internal.h"
@@ -7,119 +8,87 @@
 namespace astrolith {
 namespace {
 
-// Keeps the points with |s| <= reach and the points that boulders reach, and drops all others from the batch.
-// Returns the number of points kept; origin[k] becomes the old number of point k.
-template <typename Reach>
-int keep_near_surface(int n, float reach, const Reach& boulders_reach, const PointArrays& at,
-                      const PointArrays& metaballs_at, const LocalPoints* local, Batch& b,
-                      std::array<int, kBatch>& origin) {
-  int kept = 0;
-  for (int i = 0; i < n; ++i) {
-    const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(kept);
-    if (std::fabs(b.distance[from]) > reach && !boulders_reach(i)) continue;
-    b.x[to] = at.x[i], b.y[to] = at.y[i], b.z[to] = at.z[i];
-    b.mx[to] = metaballs_at.x[i], b.my[to] = metaballs_at.y[i], b.mz[to] = metaballs_at.z[i];
-    for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
-    if (local != nullptr) {
-      b.lx[to] = local->local.x[i], b.ly[to] = local->local.y[i], b.lz[to] = local->local.z[i];
-      for (auto* a : {&b.lmx, &b.lmy, &b.lmz}) (*a)[to] = (*a)[from];
-    }
-    origin[to] = i;
-    ++kept;
-  }
-  return kept;
-}
-
 // Keeps the points where |F| with the layers so far is at most `reach`, and the points that boulders reach.
 // Fine layers cost most, and the coarse layers before them already tell for most points that no surface is
-// near. value[i] of a dropped point becomes F with the layers so far.
-template <typename Reach>
-void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::array<int, kBatch>& origin,
-                    float* value) {
-  int kept = 0;
-  for (std::size_t from = 0; from < static_cast<std::size_t>(b.n); ++from) {
-    if (std::fabs(b.distance[from] + b.elevation[from]) > reach && !boulders_reach(origin[from])) {
-      value[origin[from]] += b.elevation[from];
+// near. value[i] of a dropped point becomes F with the layers so far. `number` holds the points' numbers i.
+void keep_undecided(const FieldModel& model, std::span<const std::uint32_t> boulders, float reach, Batch& b,
+                    std::array<int, kBatch>& number, float* value) {
+  const BatchPoints& at = b.body.at;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+    if (std::fabs(b.distance[i] + b.elevation[i]) > reach &&
+        !is_reached(model, boulders, at.x[i], at.y[i], at.z[i])) {
+      value[number[i]] += b.elevation[i];
       continue;
     }
-    const auto to = static_cast<std::size_t>(kept++);
-    if (to == from) continue;
-    for (auto* a :
-         {&b.x,        &b.y,  &b.z,  &b.mx, &b.my,        &b.mz, &b.lx, &b.ly, &b.lz,  &b.lmx, &b.lmy, &b.lmz,
-          &b.distance, &b.gx, &b.gy, &b.gz, &b.elevation, &b.px, &b.py, &b.pz, &b.lpx, &b.lpy, &b.lpz}) {
-      (*a)[to] = (*a)[from];
-    }
-    if (b.is_displaced) {
-      for (auto* a : {&b.dx, &b.dy, &b.dz}) (*a)[to] = (*a)[from];
-    }
-    for (auto& heights : b.kept) heights[to] = heights[from];
-    origin[to] = origin[from];
+    if (i != kept) b.move(i, kept);
+    number[kept++] = number[i];
   }
-  b.n = kept;
+  b.n = static_cast<int>(kept);
 }
 
-// Writes the points, displaced by the body's warp, to (lmx, lmy, lmz) of the batch. `metaballs_at` holds the
-// displaced points `at` in the body's frame. Fine layers need the displacement in the frame of the patch.
-void displace_locally(const FieldModel& model, int n, const LocalPoints& local, const PointArrays& at,
-                      const PointArrays& metaballs_at, Batch& b) {
-  const PointArrays& p = local.local;
+// Writes the local points, displaced by the body's warp. Fine layers need the displacement in the frame of
+// the patch.
+void displace_locally(const FieldModel& model, Batch& b) {
+  const BatchPoints &p = b.local.at, &at = b.body.at, &mapped = b.body.mapped;
+  BatchPoints& out = b.local.mapped;
   if (model.patch_warp) {
-    warp_points(*model.patch_warp, model.tables.arrays, n, p.x, p.y, p.z, b.lmx.data(), b.lmy.data(),
-                b.lmz.data());
+    warp_points(*model.patch_warp, model.tables.arrays, b.n, p.x.data(), p.y.data(), p.z.data(), out.x.data(),
+                out.y.data(), out.z.data());
     return;
   }
-  const auto displaced = [n](const float* c, const float* from, const float* to, float* out) {
-    for (int i = 0; i < n; ++i) out[i] = c[i] + (to[i] - from[i]);
-  };
-  displaced(p.x, at.x, metaballs_at.x, b.lmx.data());
-  displaced(p.y, at.y, metaballs_at.y, b.lmy.data());
-  displaced(p.z, at.z, metaballs_at.z, b.lmz.data());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+    out.x[i] = p.x[i] + (mapped.x[i] - at.x[i]);
+    out.y[i] = p.y[i] + (mapped.y[i] - at.y[i]);
+    out.z[i] = p.z[i] + (mapped.z[i] - at.z[i]);
+  }
 }
 
 // Adds to value[i] the elevation that the layers make, close to the surface and wherever boulders reach.
 void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<const std::uint32_t> boulders,
-                    const PointArrays& at, const PointArrays& metaballs_at, const LocalPoints* local,
                     float band, std::size_t layers, Batch& b, float* value) {
-  std::array<int, kBatch> origin;
-  const auto boulders_reach = [&](int i) { return is_reached(model, boulders, at.x[i], at.y[i], at.z[i]); };
-  b.n = keep_near_surface(b.n, model.tables.height_reach + band, boulders_reach, at, metaballs_at, local, b,
-                          origin);
-  if (b.n == 0) return;
-  std::fill_n(b.elevation.data(), b.n, 0.0f);
-  b.kept.resize(model.num_kept_heights);
+  std::array<int, kBatch> number;
+  std::iota(number.begin(), number.begin() + b.n, 0);
+  keep_undecided(model, boulders, model.tables.height_reach + band, b, number, value);
   for (std::size_t i = 0; i < std::min(layers, model.layers.size()); ++i) {
     const FieldLayer& layer = model.layers[i];
-    keep_undecided(layer.join.remaining_change + band, boulders_reach, b, origin, value);
+    keep_undecided(model, boulders, layer.join.remaining_change + band, b, number, value);
     if (b.n == 0) return;
     b.spots = spots_of(lists.spots, i);
     apply_layer(model, layer, b);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[number[i]] += b.elevation[i];
 }
 
-// Begins a batch: evaluates the bare body at n points. Returns where the metaballs are evaluated for them.
-PointArrays begin_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
-                        const LocalPoints* local, Batch& b) {
+// Begins a batch: evaluates the bare body at n points. No layer has changed the elevation yet.
+void begin_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                 const LocalPoints* local, Batch& b) {
   const FieldView& f = model.tables;
   const BodyLeaf& first = f.leaf(0);
   const bool plain = f.body.plain();
   b.n = n;
-  PointArrays metaballs_at = at;
+  b.body.at.copy(n, at);
+  BatchPoints &mapped = b.body.mapped, &gradient = b.gradient;
+  mapped.copy(n, at);
   if (plain && first.warped) {
-    warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
-    metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
+    warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, mapped.x.data(), mapped.y.data(), mapped.z.data());
   }
-  if (local != nullptr) b.origin = &local->origin;
+  if (local != nullptr) {
+    b.origin = &local->origin;
+    b.local.at.copy(n, local->local);
+  }
   if (local != nullptr && plain) {
-    displace_locally(model, n, *local, at, metaballs_at, b);
-    evaluate_local_metaballs(metaballs_of_plain(f.body, f.arrays, lists.metaballs), local->origin, n,
-                             b.lmx.data(), b.lmy.data(), b.lmz.data(), b.distance.data(), b.gx.data(),
-                             b.gy.data(), b.gz.data());
+    displace_locally(model, b);
+    const PointArrays p = b.local.mapped.arrays();
+    evaluate_local_metaballs(metaballs_of_plain(f.body, f.arrays, lists.metaballs), local->origin, n, p.x,
+                             p.y, p.z, b.distance.data(), gradient.x.data(), gradient.y.data(),
+                             gradient.z.data());
   } else {
-    evaluate_body(f.body, f.arrays, lists.metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z,
-                  b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
+    evaluate_body(f.body, f.arrays, lists.metaballs, n, mapped.x.data(), mapped.y.data(), mapped.z.data(),
+                  b.distance.data(), gradient.x.data(), gradient.y.data(), gradient.z.data());
   }
-  return metaballs_at;
+  std::fill_n(b.elevation.data(), n, 0.0f);
+  b.kept.resize(model.num_kept_heights);
 }
 
 // Joins a boulder with F at n points, in the frame of the patch where it has a kernel there.
@@ -133,6 +102,20 @@ void join_boulder(const FieldModel& model, std::uint32_t number, int n, const Po
 }
 
 }  // namespace
+
+void Batch::move(std::size_t from, std::size_t to) {
+  for (auto* a : {&distance, &elevation}) (*a)[to] = (*a)[from];
+  gradient.move(from, to);
+  const auto move_frame = [&](BatchFrame& frame) {
+    frame.at.move(from, to);
+    frame.mapped.move(from, to);
+    if (frame.is_projected) frame.feet.move(from, to);
+  };
+  move_frame(body);
+  if (origin != nullptr) move_frame(local);
+  if (is_displaced) displacement.move(from, to);
+  for (auto& heights : kept) heights[to] = heights[from];
+}
 
 std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at) {
   if (model.boulders.empty()) return {};
@@ -150,36 +133,21 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
                     const Accuracy& accuracy, float* value, const LocalPoints* local) {
   Batch b;
   b.tetrahedra = accuracy.tetrahedra;
-  const PointArrays metaballs_at = begin_batch(model, lists, n, at, local, b);
+  begin_batch(model, lists, n, at, local, b);
   // The band is a distance, and s may change faster than a distance by this factor.
   const float band = accuracy.band * model.tables.steepest;
   std::copy_n(b.distance.data(), n, value);
   const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
   if (!model.layers.empty()) {
-    add_elevations(model, lists, boulders, at, metaballs_at, local, band, accuracy.layers, b, value);
+    add_elevations(model, lists, boulders, band, accuracy.layers, b, value);
   }
   for (const std::uint32_t k : boulders) join_boulder(model, k, n, at, local, value);
 }
 
-namespace {
-
-// Evaluates the bare body at n points, and keeps all of them for layers.
-void begin_everywhere(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
-                      const LocalPoints* local, Batch& b) {
-  const PointArrays metaballs_at = begin_batch(model, lists, n, at, local, b);
-  std::array<int, kBatch> origin;
-  const auto everywhere = [](int) { return true; };
-  keep_near_surface(n, 0.0f, everywhere, at, metaballs_at, local, b, origin);
-  std::fill_n(b.elevation.data(), n, 0.0f);
-  b.kept.resize(model.num_kept_heights);
-}
-
-}  // namespace
-
 void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
                      const std::function<void(const FieldStage&)>& visit, const LocalPoints* local) {
   Batch b;
-  begin_everywhere(model, lists, n, at, local, b);
+  begin_batch(model, lists, n, at, local, b);
   std::array<float, kBatch> value;
   const auto show = [&](int layer, bool is_boulders) {
     visit({layer, is_boulders, {value.data(), static_cast<std::size_t>(n)}});
@@ -207,7 +175,7 @@ void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, co
 void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
                  const PointArrays& at, Vec3f* color, const LocalPoints* local) {
   Batch b;
-  begin_everywhere(model, lists, n, at, local, b);
+  begin_batch(model, lists, n, at, local, b);
   auto paint = paints.begin();
   for (std::size_t i = 0; i < model.layers.size() && paint != paints.end(); ++i) {
     if (paint->layer == i) paint_layer(model, model.layers[i], *paint++, b, color);
@@ -218,14 +186,8 @@ void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<con
 
 float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-  const PointArrays at{&x, &y, &z};
   Batch b;
-  const PointArrays metaballs_at = begin_batch(model, {model.metaballs.lists(), {}}, 1, at, nullptr, b);
-  std::array<int, kBatch> origin;
-  keep_near_surface(
-      1, 0.0f, [](int) { return true; }, at, metaballs_at, nullptr, b, origin);
-  b.elevation[0] = 0.0f;
-  b.kept.resize(model.num_kept_heights);
+  begin_batch(model, {model.metaballs.lists(), {}}, 1, {&x, &y, &z}, nullptr, b);
   for (std::size_t i = 0; i < number; ++i) {
     const LayerJoin& join = model.layers[i].join;
     // Heights do not depend on the elevation of earlier layers, but on their warps.

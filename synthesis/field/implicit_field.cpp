@@ -38,18 +38,14 @@ double FieldBlock::list_bytes() const {
 namespace {
 
 // Points given in coordinates local to an origin, as float coordinates of the body's frame.
-struct BodyPoints {
-  std::array<float, kBatch> x, y, z;
-
-  BodyPoints(const LocalPoints& points, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3f p =
-          rounded_in_body(points.origin, {points.local.x[i], points.local.y[i], points.local.z[i]});
-      x[i] = p.x, y[i] = p.y, z[i] = p.z;
-    }
+BatchPoints in_body(const LocalPoints& points, std::size_t n) {
+  BatchPoints at;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3f p = rounded_in_body(points.origin, {points.local.x[i], points.local.y[i], points.local.z[i]});
+    at.x[i] = p.x, at.y[i] = p.y, at.z[i] = p.z;
   }
-  PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
-};
+  return at;
+}
 
 // A field for a patch holds its fine layers relative to the centre of the patch.
 void check_origin(const FieldModel& model, const Vec3d& origin) {
@@ -76,7 +72,7 @@ void FieldBlock::for_each_batch(const Vec3d* origin, std::size_t count, std::spa
       use(i, static_cast<int>(n), lists, given, nullptr);
     } else {
       const LocalPoints local{*origin, given};
-      const BodyPoints at(local, n);
+      const BatchPoints at = in_body(local, n);
       use(i, static_cast<int>(n), lists, at.arrays(), &local);
     }
   }

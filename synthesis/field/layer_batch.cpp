@@ -25,30 +25,26 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
   }
 }
 
-// Writes the projections of the points (x, y, z), given where the metaballs are evaluated for them.
-void project(const FieldModel& model, const Batch& b, const PointArrays& p, float* px, float* py, float* pz) {
-  std::array<float, kBatch> length;
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
+void find_gradient_lengths(const FieldModel& model, const Batch& b, std::array<float, kBatch>& length) {
+  const BatchPoints& g = b.gradient;
+  gradient_lengths(b.n, g.x.data(), g.y.data(), g.z.data(), model.tables.leaf(0).metaballs.gradient_floor,
                    length.data());
+}
+
+// Finds the projections of the points on the bare surface, if they are not there.
+void project(const FieldModel& model, const Batch& b, BatchFrame& frame) {
+  if (frame.is_projected) return;
+  frame.is_projected = true;
+  std::array<float, kBatch> length;
+  find_gradient_lengths(model, b, length);
   const float longest_step = static_cast<float>(model.height_bound);
-  const auto along = [&](const float* c, const std::array<float, kBatch>& g, float* out) {
-    project(b.n, c, g.data(), length.data(), b.distance.data(), longest_step, out);
+  const auto along = [&](std::array<float, kBatch> BatchPoints::*axis) {
+    project(b.n, (frame.mapped.*axis).data(), (b.gradient.*axis).data(), length.data(), b.distance.data(),
+            longest_step, (frame.feet.*axis).data());
   };
-  along(p.x, b.gx, px);
-  along(p.y, b.gy, py);
-  along(p.z, b.gz, pz);
-}
-
-void project(const FieldModel& model, Batch& b) {
-  if (b.is_projected) return;
-  b.is_projected = true;
-  project(model, b, {b.mx.data(), b.my.data(), b.mz.data()}, b.px.data(), b.py.data(), b.pz.data());
-}
-
-void project_locally(const FieldModel& model, Batch& b) {
-  if (b.is_locally_projected) return;
-  b.is_locally_projected = true;
-  project(model, b, {b.lmx.data(), b.lmy.data(), b.lmz.data()}, b.lpx.data(), b.lpy.data(), b.lpz.data());
+  along(&BatchPoints::x);
+  along(&BatchPoints::y);
+  along(&BatchPoints::z);
 }
 
 ASTROLITH_SIMD_CLONES void lift_coordinates(int n, const float* __restrict projected,
@@ -60,45 +56,43 @@ ASTROLITH_SIMD_CLONES void lift_coordinates(int n, const float* __restrict proje
   }
 }
 
-// The points p, displaced by the layers so far that warp later layers.
-PointArrays displaced(Batch& b, const PointArrays& p) {
-  if (!b.is_displaced) return p;
+// The points of a frame, displaced by the layers so far that warp later layers.
+PointArrays displaced(Batch& b, const BatchFrame& frame) {
+  if (!b.is_displaced) return frame.at.arrays();
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
-    b.qx[i] = p.x[i] + b.dx[i];
-    b.qy[i] = p.y[i] + b.dy[i];
-    b.qz[i] = p.z[i] + b.dz[i];
+    b.displaced.x[i] = frame.at.x[i] + b.displacement.x[i];
+    b.displaced.y[i] = frame.at.y[i] + b.displacement.y[i];
+    b.displaced.z[i] = frame.at.z[i] + b.displacement.z[i];
   }
-  return {b.qx.data(), b.qy.data(), b.qz.data()};
+  return b.displaced.arrays();
 }
-PointArrays local_points(Batch& b) { return displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()}); }
 
 // Projections, lifted to the surface that the layers so far make. Uses the arrays of displaced coordinates.
-PointArrays lifted(const FieldModel& model, const PointArrays& feet, Batch& b) {
+PointArrays lifted(const FieldModel& model, const BatchFrame& frame, Batch& b) {
   std::array<float, kBatch> length;
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
-                   length.data());
-  const auto along = [&](const float* foot, const std::array<float, kBatch>& g, float* out) {
-    lift_coordinates(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
+  find_gradient_lengths(model, b, length);
+  const auto along = [&](std::array<float, kBatch> BatchPoints::*axis) {
+    lift_coordinates(b.n, (frame.feet.*axis).data(), (b.gradient.*axis).data(), length.data(),
+                     b.elevation.data(), (b.displaced.*axis).data());
   };
-  along(feet.x, b.gx, b.qx.data());
-  along(feet.y, b.gy, b.qy.data());
-  along(feet.z, b.gz, b.qz.data());
-  return {b.qx.data(), b.qy.data(), b.qz.data()};
+  along(&BatchPoints::x);
+  along(&BatchPoints::y);
+  along(&BatchPoints::z);
+  return b.displaced.arrays();
 }
 
-// Where a noise is evaluated for the points, in the patch's frame if `in_patch`.
+// Where a noise is evaluated for the points, in the frame of local coordinates if `in_patch`.
 template <class Noise>
 PointArrays places_of(const FieldModel& model, const Noise& noise, bool in_patch, Batch& b) {
+  BatchFrame& frame = in_patch ? b.local : b.body;
   if constexpr (Noise::kTraits.on_surface) {
-    in_patch ? project_locally(model, b) : project(model, b);
-    const PointArrays feet = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
-                                      : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+    project(model, b, frame);
     if constexpr (Noise::kTraits.lifts) {
-      if (noise.lifted) return lifted(model, feet, b);
+      if (noise.lifted) return lifted(model, frame, b);
     }
-    return feet;
+    return frame.feet.arrays();
   } else {
-    return in_patch ? local_points(b) : displaced(b, {b.x.data(), b.y.data(), b.z.data()});
+    return displaced(b, frame);
   }
 }
 
@@ -123,7 +117,7 @@ struct LayerHeights {
   const ArrayView& arrays() const { return model.tables.arrays; }
   template <class Noise>
   void evaluate_locally(const Noise& noise) const {
-    const PointArrays p = local_points(b);
+    const PointArrays p = displaced(b, b.local);
     evaluate_local_heights(noise, arrays(), *b.origin, b.n, p.x, p.y, p.z, b.height.data());
   }
   template <class Noise>
@@ -160,8 +154,8 @@ const float* layer_weights(const FieldModel& model, const LayerJoin& join, Batch
     multiply_by_mask(join, b.n, b.kept[static_cast<std::size_t>(join.mask)].data(), b.weight.data());
   }
   if (join.local) {
-    multiply_by_weight(join.locality, model.tables.arrays, b.n, b.x.data(), b.y.data(), b.z.data(),
-                       b.weight.data());
+    multiply_by_weight(join.locality, model.tables.arrays, b.n, b.body.at.x.data(), b.body.at.y.data(),
+                       b.body.at.z.data(), b.weight.data());
   }
   return b.weight.data();
 }
@@ -169,7 +163,8 @@ const float* layer_weights(const FieldModel& model, const LayerJoin& join, Batch
 void displace(const Vec3d& direction, const float* weight, Batch& b) {
   if (!b.is_displaced) {
     b.is_displaced = true;
-    for (auto* d : {&b.dx, &b.dy, &b.dz}) std::fill_n(d->data(), b.n, 0.0f);
+    for (auto* d : {&b.displacement.x, &b.displacement.y, &b.displacement.z})
+      std::fill_n(d->data(), b.n, 0.0f);
   }
   const auto along = [&](double per_height, std::array<float, kBatch>& d) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
@@ -177,9 +172,9 @@ void displace(const Vec3d& direction, const float* weight, Batch& b) {
       d[i] = math::fma(static_cast<float>(per_height), height, d[i]);
     }
   };
-  along(direction.x, b.dx);
-  along(direction.y, b.dy);
-  along(direction.z, b.dz);
+  along(direction.x, b.displacement.x);
+  along(direction.y, b.displacement.y);
+  along(direction.z, b.displacement.z);
 }
 
 void join_heights(const FieldModel& model, const LayerJoin& join, Batch& b) {
@@ -204,15 +199,11 @@ const PatchCraters* craters_in_patch(const FieldModel& model, const CraterRelief
 }
 
 void change_elevation(const FieldModel& model, const CraterRelief& relief, Batch& b) {
-  if (const PatchCraters* local = craters_in_patch(model, relief, b)) {
-    project_locally(model, b);
-    apply_craters(local->relief, model.tables.arrays, local->tree, b.n, b.lpx.data(), b.lpy.data(),
-                  b.lpz.data(), b.elevation.data());
-    return;
-  }
-  project(model, b);
-  apply_craters(relief, model.tables.arrays, model.crater_trees[relief.list], b.n, b.px.data(), b.py.data(),
-                b.pz.data(), b.elevation.data());
+  const PatchCraters* local = craters_in_patch(model, relief, b);
+  const PointArrays p = places_of(model, relief, local != nullptr, b);
+  apply_craters(local ? local->relief : relief, model.tables.arrays,
+                local ? local->tree : model.crater_trees[relief.list], b.n, p.x, p.y, p.z,
+                b.elevation.data());
 }
 
 // Writes what a layer paints at the points of a batch.

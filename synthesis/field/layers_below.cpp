@@ -9,12 +9,6 @@ namespace {
 
 using Coordinates = std::array<float, kBatch>;
 
-struct BatchPoints {
-  Coordinates x, y, z;
-
-  PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
-};
-
 // Replaces displaced points p + warp(p) by p. Each step of the iteration multiplies the error by at most the
 // steepness of the warp.
 void undo_warp(const CoordinateWarp& warp, const ArrayView& arrays, int n, BatchPoints& points) {
@@ -56,9 +50,7 @@ void move_to_body(const Vec3d& origin, int n, BatchPoints& points) {
 void evaluate_below(const FieldModel& model, std::size_t layers, const NoiseFrame& frame, int n,
                     const PointArrays& at, float* field) {
   BatchPoints points;
-  std::copy_n(at.x, n, points.x.begin());
-  std::copy_n(at.y, n, points.y.begin());
-  std::copy_n(at.z, n, points.z.begin());
+  points.copy(n, at);
   if (const CoordinateWarp* warp = warp_of(model, frame.moved)) {
     undo_warp(*warp, model.tables.arrays, n, points);
   }

@@ -83,17 +83,17 @@ Box box_around(int n, const PointArrays& at) {
 // Some points of a batch whose signs are open, and what is known of them.
 struct OpenPoints {
   int n = 0;
-  std::array<int, kBatch> number;  // their numbers in the batch
-  std::array<float, kBatch> x, y, z;
+  float rest = 0.0f;  // the most by which all later layers can change an elevation, length units
+  BatchPoints at;
+  std::array<int, kBatch> number;          // their numbers in the batch
   std::array<float, kBatch> middle, half;  // bounds of s
   std::array<float, kBatch> elevation;     // the elevations by the layers so far
-  float rest = 0.0f;  // the most by which all later layers can change an elevation, length units
 
-  PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
   // Makes point `from` the point `to`.
   void move(std::size_t from, std::size_t to) {
     number[to] = number[from];
-    for (auto* a : {&x, &y, &z, &middle, &half, &elevation}) (*a)[to] = (*a)[from];
+    at.move(from, to);
+    for (auto* a : {&middle, &half, &elevation}) (*a)[to] = (*a)[from];
   }
 };
 
@@ -112,9 +112,7 @@ class SignFinder {
     OpenPoints open;
     open.n = n;
     std::iota(open.number.begin(), open.number.begin() + n, 0);
-    std::copy_n(at.x, n, open.x.data());
-    std::copy_n(at.y, n, open.y.data());
-    std::copy_n(at.z, n, open.z.data());
+    open.at.copy(n, at);
     leave_out_boulders(at, open);
     if (open.n == 0 || !bound(open)) return;
     decide(open);
@@ -129,7 +127,7 @@ class SignFinder {
     if (boulders.empty()) return;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(open.n); ++i) {
-      if (!is_reached(model_, boulders, open.x[i], open.y[i], open.z[i])) open.move(i, kept++);
+      if (!is_reached(model_, boulders, open.at.x[i], open.at.y[i], open.at.z[i])) open.move(i, kept++);
     }
     open.n = static_cast<int>(kept);
   }
@@ -137,11 +135,11 @@ class SignFinder {
   // Bounds s at the points by one expansion, and the elevations where no layer has been evaluated. Returns
   // false where there is none.
   bool bound(OpenPoints& open) const {
-    const Box box = box_around(open.n, open.arrays());
+    const Box box = box_around(open.n, open.at.arrays());
     const std::optional<LevelExpansion> expansion = expand_level(metaballs_, box);
     if (!expansion) return false;
-    bound_distances(*expansion, metaballs_.parameters.gradient_floor, open.n, open.x.data(), open.y.data(),
-                    open.z.data(), open.middle.data(), open.half.data());
+    bound_distances(*expansion, metaballs_.parameters.gradient_floor, open.n, open.at.x.data(),
+                    open.at.y.data(), open.at.z.data(), open.middle.data(), open.half.data());
     if (num_evaluated_ == 0) bound_layers(*expansion, box, open);
     return true;
   }
@@ -191,9 +189,7 @@ class SignFinder {
                          model_.layers.front().join.remaining_change < std::numeric_limits<float>::max();
     if (open.n == 0 || !bounded || stands_on_body(model_.layers.front())) return;
     Batch b;
-    std::copy_n(open.x.data(), open.n, b.x.data());
-    std::copy_n(open.y.data(), open.n, b.y.data());
-    std::copy_n(open.z.data(), open.n, b.z.data());
+    b.body.at = open.at;
     std::fill_n(b.elevation.data(), open.n, 0.0f);
     b.kept.resize(model_.num_kept_heights);
     for (std::size_t l = 0; l < model_.layers.size() && open.n > 0; ++l) {
@@ -205,10 +201,9 @@ class SignFinder {
       open.rest = l + 1 < model_.layers.size() ? model_.layers[l + 1].join.remaining_change : 0.0f;
       std::copy_n(b.elevation.data(), open.n, open.elevation.data());
       decide(open, [&](std::size_t from, std::size_t to) {
-        for (auto* a : {&b.x, &b.y, &b.z, &b.elevation}) (*a)[to] = (*a)[from];
-        if (b.is_displaced) {
-          for (auto* a : {&b.dx, &b.dy, &b.dz}) (*a)[to] = (*a)[from];
-        }
+        b.body.at.move(from, to);
+        b.elevation[to] = b.elevation[from];
+        if (b.is_displaced) b.displacement.move(from, to);
         for (auto& heights : b.kept) heights[to] = heights[from];
       });
     }
@@ -219,12 +214,12 @@ class SignFinder {
     if (depth == 0 || open.n < kWorthExpansion) return;
     const float widest = *std::max_element(open.half.begin(), open.half.begin() + open.n);
     if (!(widest > tolerance_ + 0.5f * open.rest)) return;
-    const Vec3f c = to_float(box_around(open.n, open.arrays()).center());
+    const Vec3f c = to_float(box_around(open.n, open.at.arrays()).center());
     std::array<std::uint8_t, kBatch> octant;
     std::array<int, 8> count{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(open.n); ++i) {
-      octant[i] = static_cast<std::uint8_t>((open.x[i] > c.x ? 1 : 0) | (open.y[i] > c.y ? 2 : 0) |
-                                            (open.z[i] > c.z ? 4 : 0));
+      octant[i] = static_cast<std::uint8_t>((open.at.x[i] > c.x ? 1 : 0) | (open.at.y[i] > c.y ? 2 : 0) |
+                                            (open.at.z[i] > c.z ? 4 : 0));
       ++count[octant[i]];
     }
     OpenPoints group;
@@ -236,7 +231,7 @@ class SignFinder {
         if (octant[i] != k) continue;
         const auto to = static_cast<std::size_t>(group.n++);
         group.number[to] = open.number[i];
-        group.x[to] = open.x[i], group.y[to] = open.y[i], group.z[to] = open.z[i];
+        group.at.x[to] = open.at.x[i], group.at.y[to] = open.at.y[i], group.at.z[to] = open.at.z[i];
         group.elevation[to] = open.elevation[i];
       }
       if (!bound(group)) continue;
