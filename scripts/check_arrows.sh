@@ -18,6 +18,7 @@ geometry/surface           -> numerics geometry/. geometry/points
 gravity                    -> numerics geometry
 descriptor                 -> numerics geometry
 descriptor/surface         -> numerics geometry gravity descriptor
+descriptor/features        -> numerics geometry descriptor/surface
 descriptor/spectrum        -> numerics geometry
 descriptor/classification  -> numerics geometry descriptor
 synthesis/noise            -> numerics recipe

@@ -20,6 +20,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from astrolith.synthesis import (
+    Craters,
     Description,
     Field,
     Gravity,
@@ -34,6 +35,7 @@ from astrolith.synthesis import (
     describe,
     describe_surface,
     draw,
+    find_craters,
     gravity,
     height_map,
     library,
@@ -63,6 +65,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Craters",
     "Description",
     "Field",
     "Gravity",
@@ -80,6 +83,7 @@ __all__ = [
     "compare",
     "describe",
     "describe_surface",
+    "find_craters",
     "fit_shape",
     "fit_texture",
     "gravity",

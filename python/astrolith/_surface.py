@@ -96,6 +96,58 @@ def describe_surface(
     return SurfaceDescription(**made)
 
 
+@dataclasses.dataclass(eq=False)
+class Craters:
+    """The craters that were found on a surface, the surest first.
+
+    Attributes
+    ----------
+    figures
+        The member ``craters`` of the summary of ``describe --craters``: counts, sizes, depth over diameter.
+    columns
+        The columns of its table, float64 (n,) each, by their names: "x", "y" and "z" of the floor, "diameter",
+        "depth", "rim_height", "freshness", "completeness", "confidence", ...
+    """
+
+    figures: Record
+    columns: dict[str, npt.NDArray[np.float64]]
+
+    def __repr__(self) -> str:
+        return f"<astrolith.Craters: {len(self.columns['x'])}>"
+
+
+def find_craters(
+    mesh: MeshLike, *, points: int = 0, seed: int = 1, threads: int = 0, progress: Progress = None
+) -> Craters:
+    """Find the craters of a surface.
+
+    Parameters
+    ----------
+    mesh
+        A mesh of at least 1,000 triangles.
+    points
+        Evenly spread points that stand for the surface: craters of 6 of their mean edges and more are found. 0: as
+        many as the mesh has vertices, up to 60,000; else 500 to 1,000,000.
+
+    Raises
+    ------
+    ValueError
+        The mesh has too few triangles or no area, or an argument is out of range.
+    """
+    arrays = surface_of(mesh, "mesh")
+    made = _synthesis.craters(
+        arrays.name,
+        arrays.vertices,
+        arrays.faces,
+        _arrays.integer(points, "points", 0, 1000000),
+        _options.seed(seed),
+        _options.threads(threads),
+        progress,
+    )
+    made["figures"] = records(made["figures"])
+    return Craters(**made)
+
+
 def realism(
     a: MeshLike,
     b: MeshLike,

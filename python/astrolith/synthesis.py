@@ -14,12 +14,13 @@ from astrolith._mesh import Mesh, mesh_formats, read_mesh, write_mesh
 from astrolith._meshing import mesh, predict
 from astrolith._picture import render
 from astrolith._recipe import Recipe, library
-from astrolith._surface import SurfaceDescription, describe_surface, realism
+from astrolith._surface import Craters, SurfaceDescription, describe_surface, find_craters, realism
 from astrolith._synth import synth
 from astrolith._texture import Texture, texture
 from astrolith._variation import Variation, draw, vary
 
 __all__ = [
+    "Craters",
     "Description",
     "Field",
     "Gravity",
@@ -32,6 +33,7 @@ __all__ = [
     "compare",
     "describe",
     "describe_surface",
+    "find_craters",
     "gravity",
     "height_map",
     "library",

@@ -28,6 +28,7 @@
 #include "synthesis/picture/preview.h"
 #include "tasks/description/comparison.h"
 #include "tasks/description/describe_file.h"
+#include "tasks/description/feature_report.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/description/variation_reference.h"
 #include "tasks/job/body_library.h"
@@ -148,6 +149,29 @@ nb::typed<nb::dict, nb::str, nb::any> surface(const fs::path& name, const Rows<d
   return result;
 }
 
+nb::typed<nb::dict, nb::str, nb::any> craters(const fs::path& name, const Rows<double>& vertices,
+                                              const Rows<std::uint32_t>& faces, std::int64_t points,
+                                              std::uint64_t seed, int threads, nb::object progress) {
+  FeatureOptions options;
+  options.points = points;
+  options.seed = seed;
+  const FoundFeatures found = run_job(
+      std::move(progress), threads, [name, options, mesh = mesh_of(vertices, faces, {})](JobState& state) {
+        return find_features({name.string(), mesh}, options, state.progress("craters"));
+      });
+  const std::size_t count = found.features.size();
+  nb::dict columns;
+  for (std::size_t k = 0; k < columns_of({}).size(); ++k) {
+    std::vector<double> values;
+    for (const FoundFeature& f : found.features) values.push_back(columns_of(f)[k].second);
+    columns[nb::str(columns_of({})[k].first)] = array_of<double>(std::move(values), {count});
+  }
+  nb::typed<nb::dict, nb::str, nb::any> result;
+  result["figures"] = found_json(found).dump();
+  result["columns"] = columns;
+  return result;
+}
+
 std::string realism(const fs::path& a_name, const Rows<double>& a_vertices,
                     const Rows<std::uint32_t>& a_faces, const fs::path& b_name,
                     const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces, std::int64_t points,
@@ -259,6 +283,9 @@ void bind_shapes(nb::module_& module) {
   module.def("surface", &surface, nb::arg("name"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),
              nb::arg("density"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+  module.def("craters", &craters, nb::arg("name"), nb::arg("vertices").noconvert(),
+             nb::arg("faces").noconvert(), nb::arg("points"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
   module.def("realism", &realism, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
              nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),
              nb::arg("b_faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),

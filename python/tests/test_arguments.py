@@ -176,6 +176,7 @@ def public_calls():
     yield astrolith.describe, {"mesh": mesh, "points": 16}
     yield astrolith.compare, {"a": mesh, "b": mesh, "points": 16, "samples": 100}
     yield astrolith.describe_surface, {"mesh": mesh}
+    yield astrolith.find_craters, {"mesh": mesh}
     yield astrolith.realism, {"a": mesh, "b": mesh}
     yield astrolith.gravity, {"body": mesh, "density": 1.0, "sample": 0}
     yield astrolith.render, {"mesh": mesh, "width": 16, "height": 16}

@@ -91,3 +91,15 @@ def test_the_document_explains_every_statistic():
     page = (ROOT / "docs" / "descriptor.md").read_text()
     explained = re.findall(r"^\| ([a-z ]+) \|", page.split("| statistic | equation |")[1], re.MULTILINE)
     assert explained[: len(names)] == names
+
+
+def test_a_crater_is_found():
+    points, faces = sphere(60)
+    t = np.linalg.norm(points - [1, 0, 0], axis=1) / 0.3
+    rim = 0.018 * np.clip((2.5 - t) / 1.5, 0, 1) ** 3
+    found = astrolith.find_craters((points * (1 + np.where(t < 1, 0.078 * t**2 - 0.06, rim))[:, None], faces))
+    assert found.figures.likely == 1 and len(found.columns["x"]) == found.figures.listed
+    assert found.columns["diameter"][0] == pytest.approx(0.6, rel=0.1)
+    assert found.columns["x"][0] == pytest.approx(0.94, abs=0.02)
+    with pytest.raises(ValueError, match="1000 triangles"):
+        astrolith.find_craters(sphere(8))

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "numerics/portable_angles.h"
 #include "numerics/portable_double.h"
 #include "numerics/sample_statistics.h"
+#include "numerics/tangent_frame.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/preview_rays_internal.h"
 
@@ -139,6 +142,13 @@ class MarksPainter {
     draw_text(image_, left, top, dot_, words, {255, 255, 255});
   }
 
+  // A dot of a ring, from red to yellow.
+  void ring_dot(double px, double py, double shade) {
+    const int thick = dot_ + 1;
+    fill_rectangle(image_, rounded(px) - thick / 2, rounded(py) - thick / 2, thick, thick,
+                   {255, static_cast<std::uint8_t>(40.0 + 200.0 * std::clamp(shade, 0.0, 1.0)), 30});
+  }
+
   // The axes of the mesh as a view sees them, in the lower left corner of its panel.
   void axes(const ViewCamera& camera, double left, double bottom, double panel_height) {
     const double arm = std::max(8.0 * dot_, 0.045 * panel_height), reach = arm + 9.0 * dot_;
@@ -222,6 +232,25 @@ int marks_height(const PreviewOptions& options) {
   return options.marks.values || has_length_bar(options) ? kStripDots * dot_of(options.height) : 0;
 }
 
+namespace {
+
+constexpr int kRingDots = 512;
+constexpr double kRingLift = 0.05;  // radii above the ground, so that few dots lie below the surface
+
+void draw_ring(MarksPainter& painter, const PlaceRing& ring, std::size_t view, const PreviewRays& rays,
+               const RayScene& scene) {
+  const Tangents<double> along = crossed_tangents(ring.normal);
+  for (int k = 0; k < kRingDots; ++k) {
+    const portable::SineCosine turn = portable::sine_and_cosine(2.0 * std::numbers::pi * k / kRingDots);
+    const Vec3d outwards = turn.cosine * along.first + turn.sine * along.second;
+    const Vec3d place = ring.center + ring.radius * (outwards + kRingLift * ring.normal);
+    if (const auto at = rays.seen_at(view, scene.to_unit(place), scene))
+      painter.ring_dot(at->first, at->second, ring.shade);
+  }
+}
+
+}  // namespace
+
 void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
                 const RayScene& scene) {
   const PictureMarks& marks = options.marks;
@@ -230,6 +259,7 @@ void draw_marks(RgbaImage16& image, const PreviewOptions& options, const Preview
   if (marks.values) painter.value_bar(*marks.values);
   for (std::size_t view = 0; view < options.views.size(); ++view) {
     const ViewCamera& camera = rays.camera(view);
+    for (const PlaceRing& ring : marks.rings) draw_ring(painter, ring, view, rays, scene);
     for (const PlaceLabel& label : marks.labels) {
       const auto at = rays.seen_at(view, scene.to_unit(label.place), scene);
       if (at) painter.label(at->first, at->second, label.text);

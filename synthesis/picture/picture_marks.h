@@ -36,6 +36,13 @@ struct PlaceLabel {
   std::string text;
 };
 
+// A circle in space, drawn where the views see the surface near it.
+struct PlaceRing {
+  Vec3d center, normal;  // in lengths of the mesh; the normal has unit length and looks outwards
+  double radius = 0.0;
+  double shade = 1.0;  // of its colour, 0 (dark) to 1
+};
+
 struct PreviewOptions;
 
 struct PictureMarks {
@@ -44,6 +51,7 @@ struct PictureMarks {
   // where empty.
   std::optional<std::string> length_unit;
   std::vector<PlaceLabel> labels;
+  std::vector<PlaceRing> rings;
   bool axes = false;  // x, y and z in a corner of each view that shows nothing else
 };
 

@@ -11,6 +11,7 @@
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "tasks/description/describe_file.h"
+#include "tasks/description/feature_report.h"
 #include "tasks/description/shape_options.h"
 #include "tasks/description/surface_report.h"
 #include "tasks/job/device_option.h"
@@ -28,6 +29,8 @@ struct DescribeArguments {
   DeviceOption device;
   bool surface = false;
   SurfaceOptions surface_options;
+  std::filesystem::path craters, picture;
+  FeatureOptions features;
 };
 
 void add_describe_options(Job& job, DescribeArguments& arguments) {
@@ -39,7 +42,6 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
   app.add_option("-o,--output", arguments.output,
                  "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with "
                  "--surface the figures (.json) or the values at every place (.csv)")
-      .required()
       .placeholder("H.npy")
       .writes();
   arguments.options.add_to(app);
@@ -50,6 +52,23 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
       "in place of the histogram: how rough the surface is within 3, 6, 12 and 24 mean edges of places all "
       "over it, whether bumps or pits stand out, how steep it is, and how far its regions differ");
   arguments.surface_options.add_to(app, surface);
+  Option craters =
+      app.add_option("--craters", arguments.craters,
+                     "the craters of the surface, the surest first: place, diameter, depth, rim, "
+                     "freshness, completeness and confidence of each (.csv or .json)");
+  craters.placeholder("FILE.csv").writes();
+  app.add_option(
+         "--craters-picture", arguments.picture,
+         "with --craters: the mesh with a ring about each likely crater, red to yellow with confidence")
+      .needs(craters)
+      .placeholder("FILE.png")
+      .writes();
+  app.add_option(
+         "--crater-points", arguments.features.points,
+         "with --craters: evenly spread points that stand for the surface; craters of 6 of their mean "
+         "edges and more are found. 0: as many as the mesh has vertices, up to 60,000")
+      .check(in_range(std::int64_t{0}, std::int64_t{1'000'000}))
+      .needs(craters);
 }
 
 void summarize(Job& job, const ShapeDescription& shape, const std::string& features) {
@@ -92,7 +111,40 @@ void run_surface(Job& job, const DescribeArguments& arguments) {
           std::to_string(surface.points) + " points");
 }
 
+// Finds the craters, writes them and draws them.
+void run_craters(Job& job, const DescribeArguments& arguments) {
+  require_extension(arguments.craters, {".csv", ".json"});
+  require_writable(arguments.craters);
+  if (!arguments.picture.empty()) {
+    require_extension(arguments.picture, {".png"});
+    require_writable(arguments.picture);
+  }
+  const TriangleMesh mesh = read_shape(job, arguments, false);
+  FeatureOptions options = arguments.features;
+  options.seed = job.seed;
+  const FoundFeatures found = find_features({arguments.shape, mesh}, options, job.progress("craters"));
+  const std::string unit = stated_length_unit(arguments.shape);
+  write_found_features(found, unit, arguments.craters);
+  job.summary["craters"] = found_json(found);
+  job.say(arguments.craters.string() + ": " + std::to_string(found.features.size()) + " craters, " +
+          job.summary["craters"]["likely"].dump() + " of them likely");
+  if (arguments.picture.empty()) return;
+  constexpr std::size_t kMostRings = 200;
+  PreviewOptions look;
+  look.views = usual_views(mesh);
+  look.width = 2048, look.height = 1536;
+  look.seed = job.seed;
+  look.marks.axes = true;
+  look.marks.length_unit = unit;
+  add_rings(found, kMostRings, look.marks);
+  write_png8_rgb(render_preview(mesh, look, job.progress("picture")), arguments.picture);
+}
+
 void run_describe(Job& job, const DescribeArguments& arguments) {
+  if (arguments.output.empty() && arguments.craters.empty())
+    throw InputError("describe: nothing to write; name -o H.npy or --craters FILE.csv");
+  if (!arguments.craters.empty()) run_craters(job, arguments);
+  if (arguments.output.empty()) return;
   if (arguments.surface) return run_surface(job, arguments);
   require_extension(arguments.output, {".npy"});
   require_writable(arguments.output);

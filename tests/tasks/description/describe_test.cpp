@@ -1,7 +1,11 @@
 // describe: histograms of shapes, and statistics of surfaces.
 #include "tasks/description/description_jobs.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <numeric>
+#include <sstream>
 
 #include "tests/support/data.h"
 #include "tests/tasks/inputs.h"
@@ -113,6 +117,40 @@ TEST_F(Describe, MeasuresASurface) {
   refuse("fine.obj --surface -o s.npy", ".json");
   refuse("egg.obj --surface -o s.json", "egg.obj: surface statistics");
   refuse("fine.obj --places 300 -o s.json", "--surface");
+}
+
+// A sphere of radius 2 with 2,450 vertices and a crater of diameter 1.2 at +x.
+TEST_F(Describe, FindsCraters) {
+  std::istringstream sphere(testing::ellipsoid_obj(2, 2, 2, 50, 100));
+  std::string cratered, line;
+  while (std::getline(sphere, line)) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+      const double t = std::sqrt((x - 2) * (x - 2) + y * y + z * z) / 0.6, left = (2.5 - t) / 1.5;
+      const double height = t < 1 ? 0.156 * t * t - 0.12 : t < 2.5 ? 0.036 * left * left * left : 0;
+      const double factor = 1 + height / 2;
+      line = "v " + std::to_string(factor * x) + " " + std::to_string(factor * y) + " " +
+             std::to_string(factor * z);
+    }
+    cratered += line + "\n";
+  }
+  write("bowl.obj", cratered);
+  const auto summary = figures("bowl.obj --craters c.csv --craters-picture c.png");
+  EXPECT_EQ(summary["craters"]["likely"], 1);
+  EXPECT_NEAR(summary["craters"]["largest"], 1.2, 0.1);
+  EXPECT_GT(summary["craters"]["sizes"][0]["number"], 0.5);
+  EXPECT_NEAR(summary["craters"]["depth_over_diameter"][2], 0.1, 0.02);
+  const std::string table = text("c.csv");
+  EXPECT_TRUE(
+      table.starts_with("kind,x,y,z,center_x,center_y,center_z,normal_x,normal_y,normal_z,diameter,depth,"
+                        "rim_height,freshness,completeness,confidence,length_unit\ncrater,1.8"));
+  EXPECT_TRUE(has(text("c.png"), "PNG"));
+  succeed("bowl.obj --craters c.json");
+  EXPECT_EQ(json("c.json")["features"][0]["kind"], "crater");
+  refuse("bowl.obj", "name -o H.npy or --craters FILE.csv");
+  refuse("bowl.obj --craters c.txt", "c.txt: is no .csv or .json file");
+  refuse("bowl.obj -o h.npy --craters-picture c.png", "--craters");
+  refuse("egg.obj --craters c.csv", "egg.obj: features: needs a mesh of 1000 triangles");
 }
 
 TEST_F(Describe, PointsWithNormalsWillDo) {
