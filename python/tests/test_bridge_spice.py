@@ -77,13 +77,13 @@ def test_rays_of_cspice_meet_the_written_plates_of_two_segments(site, tmp_path):
     np.testing.assert_allclose(corners[1], expected, rtol=0, atol=1e-15)
     radius = np.abs(corners[0]).max()
 
-    # 500 rays towards the body, and 500 towards the patch from near by.
+    # 150 rays towards the body, and 150 towards the patch from near by.
     random = np.random.default_rng(1)
-    ends = random.normal(size=(1000, 3))
+    ends = random.normal(size=(300, 3))
     ends /= np.linalg.norm(ends, axis=1)[:, None]
-    sources, targets = 2 * radius * ends, random.uniform(-0.2, 0.2, (1000, 3)) * radius
-    targets[500:] = place + random.uniform(-0.4, 0.4, (500, 3)) * np.ptp(corners[1].reshape(-1, 3), axis=0)
-    sources[500:] = targets[500:] + 0.3 * radius * (ends[500:] * [1, 1, 0] + [0, 0, 1])
+    sources, targets = 2 * radius * ends, random.uniform(-0.2, 0.2, (300, 3)) * radius
+    targets[150:] = place + random.uniform(-0.4, 0.4, (150, 3)) * np.ptp(corners[1].reshape(-1, 3), axis=0)
+    sources[150:] = targets[150:] + 0.3 * radius * (ends[150:] * [1, 1, 0] + [0, 0, 1])
     directions = targets - sources
     directions /= np.linalg.norm(directions, axis=1)[:, None]
 
@@ -91,7 +91,7 @@ def test_rays_of_cspice_meet_the_written_plates_of_two_segments(site, tmp_path):
         ours = nearest_crossings(plates, sources, directions)
         points, found = spice.dskxv(False, "ITOKAWA", surfaces, 0.0, "ITOKAWA_FIXED", sources, directions)
         found = np.array(found, bool)
-        assert (found == np.isfinite(ours)).all() and found.sum() > (400 if surfaces == [2] else 900)
+        assert (found == np.isfinite(ours)).all() and found.sum() > (120 if surfaces == [2] else 270)
         meets = sources + np.where(found, ours, 0)[:, None] * directions
         assert np.abs(np.array(points) - meets)[found].max() <= 1e-9 * radius
 
