@@ -47,10 +47,14 @@ Terms terms_of(const CraterFit& fit, double edge) {
 constexpr Terms kCraterWeights{7.235,  -1.680, -4.748, 1.409,  1.022,  -0.389, 6.237,
                                -1.104, -0.155, -0.158, -0.469, -3.028, 0.443,  -2.400};
 
-double confidence_of(const CraterFit& fit, double edge) {
+// The same of boulders, on twelve bodies with boulders, hills and some with craters.
+constexpr Terms kBoulderWeights{-2.282, 0.043,  -1.850, 1.279,   -0.459, -0.076, 0.654,
+                                -1.056, -0.103, -4.804, -13.393, -0.956, -0.870, 0.333};
+
+double confidence_of(const CraterFit& fit, double edge, const Terms& weights) {
   const Terms terms = terms_of(fit, edge);
   double odds = 0.0;
-  for (std::size_t k = 0; k < terms.size(); ++k) odds += kCraterWeights[k] * terms[k];
+  for (std::size_t k = 0; k < terms.size(); ++k) odds += weights[k] * terms[k];
   return 1.0 / (1.0 + portable::exp(-odds));
 }
 
@@ -63,6 +67,11 @@ FoundFeature feature_of(const CraterFit& fit, BlobSign sign, double confidence) 
   f.rim_height = std::max(0.0, fit.rim_height);
   f.freshness = std::clamp((fit.depth + fit.rim_height) / (kFreshDepth * f.diameter), 0.0, 1.0);
   return f;
+}
+
+void sort_by_confidence(std::vector<FoundFeature>& found) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const FoundFeature& a, const FoundFeature& b) { return a.confidence > b.confidence; });
 }
 
 // Whether two are fits to one landform: centres within half the larger radius, and sizes within 1.8.
@@ -95,7 +104,8 @@ std::vector<FoundFeature> found_of(const EvenedSurface& even, const SmoothingSte
   std::vector<FoundFeature> found;
   for (const std::optional<CraterFit>& fit : fits) {
     if (!fit || 2.0 * fit->radius < kLeastFound * even.edge) continue;
-    const double confidence = confidence_of(*fit, even.edge);
+    const double confidence =
+        confidence_of(*fit, even.edge, sign == BlobSign::hollow ? kCraterWeights : kBoulderWeights);
     if (confidence >= least_confidence) found.push_back(feature_of(*fit, sign, confidence));
   }
   std::stable_sort(found.begin(), found.end(),
@@ -123,6 +133,11 @@ FoundFeatures find_features(const TriangleMesh& mesh, const FeatureOptions& opti
   result.edge = even.edge;
   result.area = even.area;
   result.features = found_of(even, step, BlobSign::hollow, options.least_confidence, progress);
+  if (!options.boulders) return result;
+  const std::vector<FoundFeature> boulders =
+      found_of(even, step, BlobSign::bump, options.least_confidence, progress);
+  result.features.insert(result.features.end(), boulders.begin(), boulders.end());
+  sort_by_confidence(result.features);
   return result;
 }
 

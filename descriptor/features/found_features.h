@@ -22,6 +22,7 @@ struct FeatureOptions {
   // The points that the surface is evened to, which decide the edge: landforms of 6 edges and more are found.
   // 0: the mesh's own resolution, own_points(). 500 to 1,000,000 else.
   std::int64_t points = 0;
+  bool boulders = false;  // large boulders too, for as long again
   double least_confidence = 0.1;
   std::uint64_t seed = 1;
 };

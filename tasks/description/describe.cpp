@@ -63,6 +63,9 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
       .needs(craters)
       .placeholder("FILE.png")
       .writes();
+  app.add_flag("--boulders", arguments.features.boulders,
+               "with --craters: large boulders too, in the same table; their depth is their height")
+      .needs(craters);
   app.add_option(
          "--crater-points", arguments.features.points,
          "with --craters: evenly spread points that stand for the surface; craters of 6 of their mean "
@@ -126,7 +129,8 @@ void run_craters(Job& job, const DescribeArguments& arguments) {
   const std::string unit = stated_length_unit(arguments.shape);
   write_found_features(found, unit, arguments.craters);
   job.summary["craters"] = found_json(found);
-  job.say(arguments.craters.string() + ": " + std::to_string(found.features.size()) + " craters, " +
+  if (options.boulders) job.summary["boulders"] = found_json(found, BlobSign::bump);
+  job.say(arguments.craters.string() + ": " + job.summary["craters"]["listed"].dump() + " craters, " +
           job.summary["craters"]["likely"].dump() + " of them likely");
   if (arguments.picture.empty()) return;
   constexpr std::size_t kMostRings = 200;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "numerics/errors.h"
@@ -16,12 +17,14 @@ namespace {
 
 constexpr double kLikely = 0.5;  // confidence from which a feature is drawn and measured
 
+const char* kind_of(BlobSign sign) { return sign == BlobSign::hollow ? "crater" : "boulder"; }
+
 std::string csv_of_found(const FoundFeatures& found, const std::string& unit) {
   std::string text = "kind";
   for (const auto& [name, value] : columns_of({})) text += std::string(",") + name;
   text += ",length_unit\n";
   for (const FoundFeature& f : found.features) {
-    text += "crater";
+    text += kind_of(f.sign);
     for (const auto& [name, value] : columns_of(f)) text += fmt::format(",{:.9g}", value);
     text += "," + unit + "\n";
   }
@@ -31,20 +34,21 @@ std::string csv_of_found(const FoundFeatures& found, const std::string& unit) {
 std::string json_of_found(const FoundFeatures& found, const std::string& unit) {
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FoundFeature& f : found.features) {
-    nlohmann::ordered_json row{{"kind", "crater"}};
+    nlohmann::ordered_json row{{"kind", kind_of(f.sign)}};
     for (const auto& [name, value] : columns_of(f)) row[name] = value;
     features.push_back(row);
   }
   return nlohmann::ordered_json{{"length_unit", unit}, {"features", features}}.dump(2) + "\n";
 }
 
-// The numbers of craters of at least each size, from the least one found up by steps of the square root of 2.
-nlohmann::ordered_json sizes_json(const FoundFeatures& found) {
+// The numbers of one kind of at least each size, from the least one found up by steps of the square root
+// of 2.
+nlohmann::ordered_json sizes_json(const FoundFeatures& found, BlobSign sign) {
   nlohmann::ordered_json sizes = nlohmann::ordered_json::array();
   for (double least = kLeastFound * found.edge;; least *= std::sqrt(2.0)) {
     double number = 0.0, variance = 0.0;
     for (const FoundFeature& f : found.features) {
-      if (f.diameter < least) continue;
+      if (f.sign != sign || f.diameter < least) continue;
       number += f.confidence;
       variance += f.confidence * (1.0 - f.confidence);
     }
@@ -86,21 +90,25 @@ void write_found_features(const FoundFeatures& found, const std::string& unit,
   write_file(file, file.extension() == ".json" ? json_of_found(found, unit) : csv_of_found(found, unit));
 }
 
-nlohmann::ordered_json found_json(const FoundFeatures& found) {
+nlohmann::ordered_json found_json(const FoundFeatures& found, BlobSign sign) {
   std::vector<double> ratios;
   double largest = 0.0;
+  std::int64_t listed = 0;
   for (const FoundFeature& f : found.features) {
+    if (f.sign != sign) continue;
+    ++listed;
     if (f.confidence < kLikely) continue;
     ratios.push_back(f.depth / f.diameter);
     largest = std::max(largest, f.diameter);
   }
   std::sort(ratios.begin(), ratios.end());
-  nlohmann::ordered_json entry{
-      {"points", found.points},  {"edge", found.edge}, {"listed", found.features.size()},
-      {"likely", ratios.size()}, {"largest", largest}, {"sizes", sizes_json(found)}};
+  nlohmann::ordered_json entry{{"points", found.points}, {"edge", found.edge},
+                               {"listed", listed},       {"likely", ratios.size()},
+                               {"largest", largest},     {"sizes", sizes_json(found, sign)}};
   if (ratios.empty()) return entry;
   for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95})
-    entry["depth_over_diameter"].push_back(quantile_of_sorted(ratios, share));
+    entry[sign == BlobSign::hollow ? "depth_over_diameter" : "height_over_diameter"].push_back(
+        quantile_of_sorted(ratios, share));
   return entry;
 }
 

@@ -25,11 +25,12 @@ std::vector<std::pair<const char*, double>> columns_of(const FoundFeature& featu
 void write_found_features(const FoundFeatures& found, const std::string& unit,
                           const std::filesystem::path& file);
 
-// The figures for the summary: counts, cumulative sizes with their deviation, depth over diameter. A feature
-// counts by its confidence c: a number is the sum of c, its deviation the root of the sum of c (1 - c).
-nlohmann::ordered_json found_json(const FoundFeatures& found);
+// The figures of craters, or of boulders, for the summary: counts, cumulative sizes with their deviation,
+// depth over diameter. A feature counts by its confidence c: a number is the sum of c, its deviation the root
+// of the sum of c (1 - c).
+nlohmann::ordered_json found_json(const FoundFeatures& found, BlobSign sign = BlobSign::hollow);
 
-// Adds the rims of the craters whose confidence is at least .5, the `most` surest of them.
+// Adds the outlines of those whose confidence is at least .5, the `most` surest of them.
 void add_rings(const FoundFeatures& found, std::size_t most, PictureMarks& marks);
 
 }  // namespace astrolith

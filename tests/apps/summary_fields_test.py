@@ -128,9 +128,10 @@ def runs(folder):
     yield ["describe", rough, "--surface", "-o", folder / "surface.json", "--places", "500"]
     yield ["describe", ball, "-o", folder / "description.npy", "--points", "1000"]
     impacts, cratered = folder / "impacts.json", folder / "cratered.ply"
-    impacts.write_text(BODY % ('[{"type": "craters", "craters": [{"direction": [1, 0, 0], "diameter": 0.6}]}]', ""))
+    impacts.write_text(BODY % ('[{"type": "craters", "craters": [{"direction": [1, 0, 0], "diameter": 0.6}]},'
+                               '{"type": "boulders", "boulders": [{"direction": [0, 0, 1], "axes": [0.5, 0.4, 0.3]}]}]', ""))
     yield ["synth", impacts, "-o", cratered, "--resolution", "64"]
-    yield ["describe", cratered, "--craters", folder / "craters.csv", "--craters-picture", folder / "craters.png"]
+    yield ["describe", cratered, "--craters", folder / "craters.csv", "--boulders", "--craters-picture", folder / "craters.png"]
     realism = ["--realism", "-o", folder / "realism.json", "--points", "500", "--samples", "500", "--places", "500"]
     yield ["compare", fine, fine, "--floor", "--align", *realism]
     yield ["compare", rough, rough, *realism]

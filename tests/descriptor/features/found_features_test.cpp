@@ -72,6 +72,25 @@ TEST(FoundFeatures, ABumpIsNoCrater) {
   EXPECT_TRUE(likely(cratered_sphere({{bowl.direction, bowl.diameter, -bowl.depth, -bowl.rim}})).empty());
 }
 
+// Half an egg on the ground, between two craters.
+TEST(FoundFeatures, ABoulderIsFoundWhereAsked) {
+  const Vec3d place = normalized(Vec3d{0.2, -0.3, 1.0});
+  TriangleMesh mesh = cratered_sphere({kBowls[0], kBowls[1]});
+  for (Vec3d& p : mesh.vertices) {
+    const double t = norm(normalized(p) - place) / 0.16;
+    if (t < 1.0) p *= 1.0 + 0.1 * std::sqrt(1.0 - t * t);
+  }
+  FeatureOptions options;
+  EXPECT_EQ(likely(mesh, options).size(), 2u);
+  options.boulders = true;
+  std::vector<FoundFeature> found = likely(mesh, options);
+  std::erase_if(found, [](const FoundFeature& f) { return f.sign == BlobSign::hollow; });
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found.front().diameter, 0.32, 0.08);
+  EXPECT_NEAR(found.front().depth, 0.1, 0.03);
+  EXPECT_LT(norm(found.front().place - 1.1 * place), 0.05);
+}
+
 TEST(FoundFeatures, ATurnedAndScaledBodyOfOtherTrianglesHasTheSameCraters) {
   constexpr double kScale = 250.0;
   FeatureOptions options;
