@@ -11,8 +11,6 @@ from astrolith import _arrays, _options, _synthesis
 from astrolith._mesh import MeshLike, arrays_of, surface_of
 from astrolith._options import Progress
 
-_LUNAR_SHARES = {"rock": 0.35, "lambert": 0.0, "lommel-seeliger": 1.0}
-
 
 def render(
     mesh: MeshLike,
@@ -45,7 +43,8 @@ def render(
     sun_body
         The direction towards the sun in the axes of the mesh, in place of ``sun``.
     reflectance
-        ``"lambert"``, ``"lommel-seeliger"`` or ``"rock"``, .35 of Lommel-Seeliger and .65 of Lambert.
+        ``"lambert"``, ``"lommel-seeliger"``, ``"rock"``, .35 of Lommel-Seeliger and .65 of Lambert, ``"akimov"``, or a law
+        with its numbers, ``"mcewen L .5"``, ``"minnaert k .7"`` or ``"hapke w .2 g -.3 b0 .8 h .05 theta 20"`` (degrees).
     ambient
         Light from everywhere as a share of sunlight, 0 to 10.
     transparent
@@ -71,7 +70,6 @@ def render(
     words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else _arrays.items(cameras, "cameras"))]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
     towards_sun = _arrays.vector(towards_sun, sun_name)
-    _arrays.choice(reflectance, "reflectance", tuple(_LUNAR_SHARES))
     for name, direction in [("views", d) for d in directions] + [(sun_name, towards_sun)]:
         if not any(direction):
             raise ValueError(f"{name}: 0 0 0 is no direction; give another")
@@ -85,7 +83,7 @@ def render(
         words,
         towards_sun,
         sun_body is not None,
-        _LUNAR_SHARES[reflectance],
+        _arrays.text(reflectance, "reflectance"),
         _arrays.number(ambient, "ambient", 0.0, 10.0),
         _arrays.flag(transparent, "transparent"),
         _arrays.integer(width, "width", 16, 16384),

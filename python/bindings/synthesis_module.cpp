@@ -232,14 +232,15 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
                                 const OptionalRows& normals, const OptionalRows& colors,
                                 const std::vector<std::array<double, 3>>& views,
                                 const std::vector<std::string>& cameras, const std::array<double, 3>& sun,
-                                bool sun_in_body, double lunar_share, double ambient, bool transparent,
-                                int width, int height, std::uint64_t seed, int threads, nb::object progress) {
+                                bool sun_in_body, const std::string& reflectance, double ambient,
+                                bool transparent, int width, int height, std::uint64_t seed, int threads,
+                                nb::object progress) {
   PreviewOptions options;
   options.width = width;
   options.height = height;
   options.seed = seed;
   options.sun = {{sun[0], sun[1], sun[2]}, sun_in_body};
-  options.lunar_share = lunar_share;
+  options.reflectance = parse_reflectance("reflectance", reflectance);
   options.ambient = ambient;
   options.transparent = transparent;
   options.views.clear();
@@ -304,7 +305,7 @@ void bind_products(nb::module_& module) {
              nb::arg("progress").none());
   module.def("render", &render, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
              nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("views"),
-             nb::arg("cameras"), nb::arg("sun"), nb::arg("sun_in_body"), nb::arg("lunar_share"),
+             nb::arg("cameras"), nb::arg("sun"), nb::arg("sun_in_body"), nb::arg("reflectance"),
              nb::arg("ambient"), nb::arg("transparent"), nb::arg("width"), nb::arg("height"), nb::arg("seed"),
              nb::arg("threads"), nb::arg("progress").none());
   module.def("texture", &texture, nb::arg("json"), nb::arg("name"), nb::arg("width"), nb::arg("height"),

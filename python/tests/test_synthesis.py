@@ -187,7 +187,7 @@ def test_cameras_suns_and_transparency_are_those_of_synth(ball):
     with pytest.raises(ValueError, match="cameras"):
         astrolith.render(body, cameras="lat 100")
     with pytest.raises(ValueError, match="reflectance"):
-        astrolith.render(body, reflectance="hapke")
+        astrolith.render(body, reflectance="hapke w 1.2")
 
 
 def test_recipes_are_edited_as_attributes_and_checked(ball, tmp_path):

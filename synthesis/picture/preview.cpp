@@ -161,7 +161,7 @@ class Painter {
                              : interpolate_corners(mesh_, options_.vertex_colors, hit);
     const float facing = std::max(0.0f, dot(normal, to_viewer));
     const Vec3f start = lifted(point, hit, face);
-    return albedo * (sunlight(sun, start, normal, facing, place) + ambient(facing));
+    return albedo * (sunlight(sun, start, normal, to_viewer, place) + ambient(facing));
   }
 
   // Where secondary rays start: above the planes across the normals of the triangle's corners, so that facets
@@ -179,14 +179,13 @@ class Painter {
     return start;
   }
 
-  float sunlight(const Sun& sun, const Vec3f& start, const Vec3f& normal, float facing,
+  float sunlight(const Sun& sun, const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer,
                  const SamplePlace& place) const {
-    const float incidence = dot(normal, sun.direction);
+    const float incidence = dot(normal, sun.direction), facing = std::max(0.0f, dot(normal, to_viewer));
     if (incidence <= 0.0f) return 0.0f;
     const Vec3f towards = normalized(sun.direction + place.sun_x * sun.first + place.sun_y * sun.second);
     if (scene_.occluded(start, towards)) return 0.0f;
-    const auto lunar = static_cast<float>(options_.lunar_share);
-    return lunar * 2.0f * incidence / (incidence + std::max(facing, 1e-3f)) + (1.0f - lunar) * incidence;
+    return pictured_reflectance(options_.reflectance, incidence, facing, dot(to_viewer, sun.direction));
   }
 
   // Light from a sky that is brightest behind the viewer keeps slopes legible in shadows.

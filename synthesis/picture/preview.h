@@ -11,6 +11,7 @@
 #include "synthesis/picture/camera.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/picture_marks.h"
+#include "synthesis/picture/reflectance.h"
 
 namespace astrolith {
 
@@ -27,9 +28,6 @@ struct Sunlight {
 // degrees, and by its azimuth in the picture, degrees counter-clockwise from up.
 Sunlight sun_at_phase(double phase_degrees, double azimuth_degrees);
 
-// Shares of the law of Lommel and Seeliger in the reflectance, the lunar share of McEwen (1991).
-inline constexpr double kLambert = 0.0, kRock = 0.35, kLommelSeeliger = 1.0;
-
 struct PreviewOptions {
   int width = 1280, height = 960;  // kLeastPictureSide .. kMostPictureSide
   PictureMarks marks;              // none, unless asked for; the views take the rest of the height
@@ -43,10 +41,7 @@ struct PreviewOptions {
   // Ratio of the light from everywhere, brightest from behind the viewer, to sunlight. 0 leaves shadows
   // black, as in space.
   double ambient = 0.1;
-  // The reflectance is albedo * (L * 2 m0 / (m0 + m) + (1 - L) * m0) with the cosines m0 of incidence and m
-  // of emission and the lunar share L (McEwen, Icarus 92, 1991, eq. 3). 0 is Lambert's law, 1 that of Lommel
-  // and Seeliger, which makes full moons look flat.
-  double lunar_share = kRock;
+  Reflectance reflectance;  // times the albedo
   // The linear-light albedo (sRGB components in [0, 1], colormap.h) at each vertex, or empty for neutral
   // grey.
   std::vector<Vec3<float>> vertex_colors;

@@ -96,7 +96,6 @@ void check_preview_options(const PreviewOptions& options, const TriangleMesh& me
   if (!within(options.sun_radius_degrees, 0, 45) || !within(options.ambient, 0, 10)) {
     throw InputError("preview: the sun's radius must be 0 .. 45 degrees and the ambient light 0 .. 10");
   }
-  if (!within(options.lunar_share, 0, 1)) throw InputError("preview: the lunar share must be 0 .. 1");
   if (!(squared_norm(options.sun.direction) > 0.0)) throw InputError("preview: the sun needs a direction");
   for (const Camera& view : options.views) {
     if (!within(view.field_of_view, 0, 175) || !(view.distance >= 0.0) || !std::isfinite(view.roll)) {

@@ -67,9 +67,12 @@ void PictureOptions::add_to(OptionTable& app) {
       .expected(2)
       .placeholder("ANGLE AZIMUTH")
       .default_text("");
-  app.add_option("--reflectance", reflectance,
-                 "lambert; lommel-seeliger, as of dark dust; rock, .35 of lommel-seeliger and .65 of lambert")
-      .check(one_of({"rock", "lambert", "lommel-seeliger"}));
+  app.add_option(
+      "--reflectance", reflectance,
+      "lambert; lommel-seeliger, as of dark dust; rock, .35 of lommel-seeliger and .65 of lambert; akimov; "
+      "or "
+      "a law with its numbers: \"mcewen L .5\", \"minnaert k .7\", \"hapke w .2 g -.3 b0 .8 h .05 theta 20\" "
+      "(theta in degrees)");
   app.add_option("--ambient", ambient, "light from everywhere as a share of sunlight; 0 leaves shadows black")
       .check(in_range(0.0, 10.0));
   app.add_option("--background", background, "behind the body")
@@ -91,6 +94,7 @@ void PictureOptions::check(const Job& job, bool has_picture, const std::string& 
     throw InputError("--camera, --view: give at most 64 of them together");
   }
   cameras_of(cameras);
+  parse_reflectance("--reflectance", reflectance);
   for (const Direction& view : views) require_direction("--view", vector_of(view));
   require_direction("--sun", vector_of(sun));
   int suns = 0;
@@ -118,7 +122,7 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
   for (const Direction& view : views) made.views.push_back(view_from(vector_of(view)));
   if (made.views.empty()) made.views = usual_views(mesh);
   made.ambient = ambient;
-  made.lunar_share = reflectance == "lambert" ? kLambert : reflectance == "rock" ? kRock : kLommelSeeliger;
+  made.reflectance = parse_reflectance("--reflectance", reflectance);
   made.transparent = background == "transparent";
   made.marks.axes = !no_marks;
   if (!no_marks) made.marks.length_unit = unit;

@@ -150,12 +150,12 @@ TEST(Preview, LambertAndLommelSeeligerFollowTheirFormulas) {
   options.ambient = 0.0;
   options.sun = sun_at_phase(60.0, 90.0);  // from the left
   options.vertex_colors.assign(sphere_mesh().vertices.size(), {0.5f, 0.5f, 0.5f});
-  const auto middle = [&](double lunar_share) {
-    options.lunar_share = lunar_share;
+  const auto middle = [&](const char* law) {
+    options.reflectance = parse_reflectance("law", law);
     return linear_of_srgb(render_picture(sphere_mesh(), options).image.pixels[4 * (64 * 32 + 32)] / 65535.0);
   };
-  EXPECT_NEAR(middle(kLambert), 0.5 * 0.5, 0.01);
-  EXPECT_NEAR(middle(kLommelSeeliger), 0.5 * 2 * 0.5 / 1.5, 0.01);
+  EXPECT_NEAR(middle("lambert"), 0.5 * 0.5, 0.01);
+  EXPECT_NEAR(middle("lommel-seeliger"), 0.5 * 2 * 0.5 / 1.5, 0.01);
 }
 
 TEST(Preview, BadMeshesAndOptionsAreInputErrors) {

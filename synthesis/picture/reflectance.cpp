@@ -1,0 +1,202 @@
+#include "synthesis/picture/reflectance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string_view>
+
+#include "numerics/errors.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kLeastCosine = 1e-3f;
+
+double angle_of_cosine(double c) {
+  const double cosine = std::clamp(c, -1.0, 1.0);
+  return portable::atan2(std::sqrt(1.0 - cosine * cosine), cosine);
+}
+
+double minnaert(double k, double m0, double m) { return portable::pow(m0, k) * portable::pow(m, k - 1.0); }
+
+// At opposition the disk is flat. The other end, where the sun stands behind the body, is dark.
+double akimov(double m0, double m, double phase) {
+  constexpr double kSmall = 1e-4;
+  if (phase < kSmall) return 1.0;
+  if (phase > kPi - kSmall) return 0.0;
+  const double g = portable::atan2(m0 / m - portable::cos(phase), portable::sin(phase));
+  const double cos_g = portable::cos(g), cos_b = std::min(1.0, m / cos_g);
+  const double along = portable::cos(kPi / (kPi - phase) * (g - 0.5 * phase));
+  if (along <= 0.0) return 0.0;
+  return portable::cos(0.5 * phase) * along * portable::pow(cos_b, phase / (kPi - phase)) / cos_g;
+}
+
+// Ground of a mean slope, Hapke 1984, equations 45 to 58.
+class RoughGround {
+ public:
+  RoughGround(double theta, double m0, double m, double phase) {
+    tan_ = portable::tan(theta);
+    chi_ = 1.0 / std::sqrt(1.0 + kPi * tan_ * tan_);
+    const Slant i = slant(m0), e = slant(m);
+    const double sines = i.sine * e.sine;
+    const double cos_psi =
+        sines > 1e-12 ? std::clamp((portable::cos(phase) - m0 * m) / sines, -1.0, 1.0) : 1.0;
+    const double psi = angle_of_cosine(cos_psi), half = 0.5 * (1.0 - cos_psi);  // sin^2(psi / 2)
+    const bool sun_is_higher = m0 >= m;
+    const Slant &low = sun_is_higher ? e : i, &high = sun_is_higher ? i : e;
+    const double below = 2.0 - low.e1 - psi / kPi * high.e1;
+    // Of the two directions, the one nearer to the ground is tilted by itself, the other by what it sees of
+    // it.
+    const double near = chi_ * (low.cosine + low.sine * tan_ * (low.e2 - half * high.e2) / below);
+    const double far = chi_ * (high.cosine + high.sine * tan_ * (cos_psi * low.e2 + half * high.e2) / below);
+    m0_ = sun_is_higher ? far : near;
+    m_ = sun_is_higher ? near : far;
+    const double apart = psi > kPi - 1e-9 ? 0.0 : portable::exp(-2.0 * portable::tan(0.5 * psi));
+    const double lit = high.cosine / lone(high);
+    shadowing_ = m_ / lone(e) * (m0 / lone(i)) * chi_ / (1.0 - apart + apart * chi_ * lit);
+  }
+
+  double m0() const { return m0_; }
+  double m() const { return m_; }
+  double shadowing() const { return shadowing_; }
+
+ private:
+  struct Slant {
+    double cosine, sine, e1, e2;
+  };
+  Slant slant(double cosine) const {
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    if (sine < 1e-9) return {cosine, sine, 0.0, 0.0};
+    const double cotangents = cosine / sine / tan_;
+    return {cosine, sine, portable::exp(-2.0 / kPi * cotangents),
+            portable::exp(-cotangents * cotangents / kPi)};
+  }
+  // The tilted cosine of a direction that sees no shadow.
+  double lone(const Slant& s) const { return chi_ * (s.cosine + s.sine * tan_ * s.e2 / (2.0 - s.e1)); }
+
+  double tan_, chi_, m0_, m_, shadowing_;
+};
+
+double hapke(const Reflectance& r, double m0, double m, double phase) {
+  const double surge = r.b0 / (1.0 + portable::tan(0.5 * std::min(phase, kPi - 1e-6)) / r.h);
+  const double spread = 1.0 + 2.0 * r.g * portable::cos(phase) + r.g * r.g;
+  const double scattered = (1.0 - r.g * r.g) / (spread * std::sqrt(spread));
+  const double gamma = std::sqrt(1.0 - r.w);
+  const auto light_among = [&](double x) { return (1.0 + 2.0 * x) / (1.0 + 2.0 * x * gamma); };
+  const auto smooth = [&](double x0, double x) {
+    return r.w / 4.0 * x0 / (x0 + x) * ((1.0 + surge) * scattered + light_among(x0) * light_among(x) - 1.0);
+  };
+  if (r.theta < 1e-3) return smooth(m0, m);
+  const RoughGround ground(r.theta * kPi / 180.0, m0, m, phase);
+  return smooth(ground.m0(), ground.m()) * ground.shadowing();
+}
+
+struct Number {
+  double Reflectance::*value;
+  double low, high;
+};
+using Numbers = std::map<std::string, Number, std::less<>>;
+
+const Numbers& numbers_of(Reflectance::Law law) {
+  static const Numbers none;
+  static const Numbers mcewen{{"L", {&Reflectance::lunar_share, 0.0, 1.0}}};
+  static const Numbers minnaert{{"k", {&Reflectance::k, 0.1, 1.0}}};
+  static const Numbers hapke{{"w", {&Reflectance::w, 1e-4, 0.9999}},
+                             {"g", {&Reflectance::g, -0.95, 0.95}},
+                             {"b0", {&Reflectance::b0, 0.0, 10.0}},
+                             {"h", {&Reflectance::h, 1e-4, 2.0}},
+                             {"theta", {&Reflectance::theta, 0.0, 60.0}}};
+  switch (law) {
+    case Reflectance::Law::kLunarLambert:
+      return mcewen;
+    case Reflectance::Law::kMinnaert:
+      return minnaert;
+    case Reflectance::Law::kAkimov:
+      return none;
+    case Reflectance::Law::kHapke:
+      return hapke;
+  }
+  return none;
+}
+
+}  // namespace
+
+Reflectance parse_reflectance(const std::string& name, const std::string& words) {
+  std::istringstream in(words);
+  std::string law;
+  in >> law;
+  Reflectance made;
+  using Law = Reflectance::Law;
+  static const std::map<std::string, Law, std::less<>> kLaws{{"rock", Law::kLunarLambert},
+                                                             {"lambert", Law::kLunarLambert},
+                                                             {"lommel-seeliger", Law::kLunarLambert},
+                                                             {"mcewen", Law::kLunarLambert},
+                                                             {"minnaert", Law::kMinnaert},
+                                                             {"akimov", Law::kAkimov},
+                                                             {"hapke", Law::kHapke}};
+  const auto known = kLaws.find(law);
+  if (known == kLaws.end()) {
+    throw InputError(
+        fmt::format("{}: \"{:.40}\" is no law of reflection; write {}", name, law, kReflectanceWords));
+  }
+  made.law = known->second;
+  if (law == "lambert") made.lunar_share = 0.0;
+  if (law == "lommel-seeliger") made.lunar_share = 1.0;
+  static const Numbers none;
+  const Numbers& numbers = law == "mcewen" || made.law != Law::kLunarLambert ? numbers_of(made.law) : none;
+  for (std::string word, text; in >> word;) {
+    const auto number = numbers.find(word);
+    if (number == numbers.end()) {
+      throw InputError(
+          fmt::format("{}: \"{:.40}\" is no number of {}; write {}", name, word, law, kReflectanceWords));
+    }
+    double value = 0.0;
+    in >> text;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const auto& [member, low, high] = number->second;
+    if (error != std::errc() || stop != end || !(value >= low && value <= high)) {
+      throw InputError(fmt::format("{}: {} of {} must be {:g} to {:g}", name, word, law, low, high));
+    }
+    made.*member = value;
+    text.clear();
+  }
+  return made;
+}
+
+double reflectance_at(const Reflectance& law, double m0, double m, double phase) {
+  switch (law.law) {
+    case Reflectance::Law::kLunarLambert:
+      return law.lunar_share * 2.0 * m0 / (m0 + m) + (1.0 - law.lunar_share) * m0;
+    case Reflectance::Law::kMinnaert:
+      return minnaert(law.k, m0, m);
+    case Reflectance::Law::kAkimov:
+      return akimov(m0, m, phase);
+    case Reflectance::Law::kHapke:
+      return hapke(law, m0, m, phase);
+  }
+  return 0.0;
+}
+
+float pictured_reflectance(const Reflectance& law, float m0, float m, float cos_phase) {
+  if (law.law == Reflectance::Law::kLunarLambert) {
+    const auto lunar = static_cast<float>(law.lunar_share);
+    return lunar * 2.0f * m0 / (m0 + std::max(m, kLeastCosine)) + (1.0f - lunar) * m0;
+  }
+  const double phase = angle_of_cosine(double{cos_phase});
+  const double value =
+      reflectance_at(law, double{std::max(m0, kLeastCosine)}, double{std::max(m, kLeastCosine)}, phase);
+  if (law.law != Reflectance::Law::kHapke) return static_cast<float>(value);
+  const double midway = std::max(portable::cos(0.5 * phase), double{kLeastCosine});
+  return static_cast<float>(value / reflectance_at(law, midway, midway, phase) * midway);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,49 @@
+// How ground reflects sunlight: laws of photometry, as functions of the cosines m0 of incidence and m of
+// emission and of the phase angle a between the directions to the sun and to the viewer.
+//
+//   lunar-Lambert   L 2 m0 / (m0 + m) + (1 - L) m0             (McEwen, Icarus 92, 1991, eq. 3; L = 0 is
+//   Lambert's) Minnaert        m0^k m^(k - 1) Akimov          cos(a/2) cos[pi / (pi - a) (g - a/2)] cos(b)^(a
+//   / (pi - a)) / cos g, with the photometric
+//                   longitude g and latitude b: m0 = cos b cos(a - g), m = cos b cos g   (Shkuratov et al.
+//                   2011)
+//   Hapke 1984      w / 4 m0e / (m0e + me) [(1 + B(a)) P(a) + H(m0e) H(me) - 1] S, Icarus 59: B = B0 / (1 +
+//   tan(a/2)
+//                   / h), P of Henyey and Greenstein, H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w)), and the
+//                   tilted cosines m0e, me and the shadowing S of ground with a mean slope theta
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace astrolith {
+
+struct Reflectance {
+  enum class Law { kLunarLambert, kMinnaert, kAkimov, kHapke };
+  Law law = Law::kLunarLambert;
+  double lunar_share = 0.35;  // L, 0 .. 1
+  double k = 0.7;             // of Minnaert, .1 .. 1
+  double w = 0.2;             // single-scattering albedo, above 0, below 1
+  double g = -0.3;            // of Henyey and Greenstein, -.95 .. .95; below 0 rock scatters backwards
+  double b0 = 0.8, h = 0.05;  // height 0 .. 10 and width .0001 .. 2 of the opposition surge
+  double theta = 20.0;        // mean slope below what is meshed, degrees, 0 .. 60
+};
+
+// "rock" (L = .35), "lambert", "lommel-seeliger", "akimov", or a law with its numbers: "mcewen L .5",
+// "minnaert k .6", "hapke w .2 g -.3 b0 .8 h .05 theta 20"; what is left out has the value above. Throws
+// InputError, naming `name`, for words that say no law and for numbers out of range.
+Reflectance parse_reflectance(const std::string& name, const std::string& words);
+
+// The words of parse_reflectance(), for messages and help.
+inline constexpr const char* kReflectanceWords =
+    "rock, lambert, lommel-seeliger, akimov, mcewen L N, minnaert k N, hapke w N g N b0 N h N theta DEGREES";
+
+// The law's value at cosines in (0, 1] and a phase angle of 0 .. pi. Of Hapke's law it is I/F; of the others
+// the ratio to ground that is seen and lit from above, whose albedo is 1.
+double reflectance_at(const Reflectance& law, double m0, double m, double phase);
+
+// What pictures show of it: Hapke's law over its own value where ground faces midway between the sun and the
+// viewer, times the cosine there. The phase curve and the albedo are left out so that pictures need no
+// exposure. Cosines below a thousandth count as that.
+float pictured_reflectance(const Reflectance& law, float m0, float m, float cos_phase);
+
+}  // namespace astrolith
