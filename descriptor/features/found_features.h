@@ -49,7 +49,7 @@ struct FoundFeatures {
   double area = 0.0;                   // of the mesh
 };
 
-// Works on open meshes too. The result depends on mesh, options and seed alone. Takes some six processor
+// Works on open meshes too. The result depends on mesh, options and seed alone. Takes some seven processor
 // seconds for 50,000 points, in proportion to them. Throws InputError "features: ..." for points out of range
 // and a mesh without area or with fewer than 1,000 triangles, and WorkError when progress asks to stop.
 FoundFeatures find_features(const TriangleMesh& mesh, const FeatureOptions& options,
