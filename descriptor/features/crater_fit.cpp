@@ -1,4 +1,4 @@
-#include "descriptor/features/crater_fit.h"
+#include "descriptor/features/crater_fit_internal.h"
 
 #include <algorithm>
 #include <cmath>

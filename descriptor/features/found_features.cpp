@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "descriptor/features/crater_fit_internal.h"
 #include "descriptor/surface/surface_statistics.h"
 #include "numerics/errors.h"
 #include "numerics/portable_double.h"

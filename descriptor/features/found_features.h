@@ -4,15 +4,15 @@
 //   for (const FoundFeature& f : found.features) ...   // the surest first
 //
 // Blobs of the surface's scale space (scale_space.h) say where one may lie; a bowl with a rim, or a dome, is
-// fitted to each (crater_fit.h). What the fit is like gives the confidence, and of several fits to one
-// landform the surest stays.
+// fitted to each (crater_fit_internal.h). What the fit is like gives the confidence, and of several fits to
+// one landform the surest stays.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "descriptor/features/crater_fit.h"
+#include "descriptor/features/scale_space.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
 
