@@ -148,7 +148,8 @@ void add_beliefs(LeastSquares<N>& problem, double curvature, double weight) {
   std::array<double, N> row{};
   row[kDepth] = -0.25, row[kRim] = 1.0;
   problem.add(row, 0.0, kRimBelief * weight);
-  const double spread = kBendSpread * curvature + 0.02, strength = kBendBelief * weight / (spread * spread);
+  const double spread = kBendSpread * std::fabs(curvature) + 0.02,
+               strength = kBendBelief * weight / (spread * spread);
   row = {};
   row[3] = row[5] = 0.5;
   problem.add(row, -0.5 * curvature, strength);

@@ -1,15 +1,15 @@
 // How ground reflects sunlight: laws of photometry, as functions of the cosines m0 of incidence and m of
 // emission and of the phase angle a between the directions to the sun and to the viewer.
 //
-//   lunar-Lambert   L 2 m0 / (m0 + m) + (1 - L) m0             (McEwen, Icarus 92, 1991, eq. 3; L = 0 is
-//   Lambert's) Minnaert        m0^k m^(k - 1) Akimov          cos(a/2) cos[pi / (pi - a) (g - a/2)] cos(b)^(a
-//   / (pi - a)) / cos g, with the photometric
-//                   longitude g and latitude b: m0 = cos b cos(a - g), m = cos b cos g   (Shkuratov et al.
-//                   2011)
-//   Hapke 1984      w / 4 m0e / (m0e + me) [(1 + B(a)) P(a) + H(m0e) H(me) - 1] S, Icarus 59: B = B0 / (1 +
-//   tan(a/2)
-//                   / h), P of Henyey and Greenstein, H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w)), and the
-//                   tilted cosines m0e, me and the shadowing S of ground with a mean slope theta
+//   lunar-Lambert   L 2 m0 / (m0 + m) + (1 - L) m0; L = 0 is Lambert's (McEwen, Icarus 92, 1991, eq. 3)
+//   Minnaert        m0^k m^(k - 1)
+//   Akimov          cos(a/2) cos[pi / (pi - a) (g - a/2)] cos(b)^(a / (pi - a)) / cos g
+//   Hapke           w / 4 m0e / (m0e + me) [(1 + B(a)) P(a) + H(m0e) H(me) - 1] S (Icarus 59, 1984)
+//
+// Akimov's photometric longitude g and latitude b have m0 = cos b cos(a - g) and m = cos b cos g (Shkuratov
+// et al. 2011). Hapke's B = B0 / (1 + tan(a/2) / h), P is that of Henyey and Greenstein, H(x) = (1 + 2 x) /
+// (1 + 2 x sqrt(1 - w)); m0e, me and S are the tilted cosines and the shadowing of ground of mean slope
+// theta.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ double reflectance_at(const Reflectance& law, double m0, double m, double phase)
 
 // What pictures show of it: Hapke's law over its own value where ground faces midway between the sun and the
 // viewer, times the cosine there. The phase curve and the albedo are left out so that pictures need no
-// exposure. Cosines below a thousandth count as that.
+// exposure. Cosines of emission below a thousandth count as that.
 float pictured_reflectance(const Reflectance& law, float m0, float m, float cos_phase);
 
 }  // namespace astrolith

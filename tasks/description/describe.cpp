@@ -69,7 +69,7 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
   app.add_option(
          "--crater-points", arguments.features.points,
          "with --craters: evenly spread points that stand for the surface; craters of 6 of their mean "
-         "edges and more are found. 0: as many as the mesh has vertices, up to 60,000")
+         "edges and more are found, 500 or more. 0: as many as the mesh has vertices, up to 60,000")
       .check(in_range(std::int64_t{0}, std::int64_t{1'000'000}))
       .needs(craters);
 }
@@ -102,8 +102,6 @@ TriangleMesh read_shape(Job& job, const DescribeArguments& arguments, bool or_po
 }
 
 void run_surface(Job& job, const DescribeArguments& arguments) {
-  require_extension(arguments.output, {".json", ".csv"});
-  require_writable(arguments.output);
   const TriangleMesh mesh = read_shape(job, arguments, false);
   const SurfaceStatistics surface =
       describe_surface({arguments.shape, mesh}, arguments.surface_options.of(job), job.progress("surface"));
@@ -147,11 +145,19 @@ void run_craters(Job& job, const DescribeArguments& arguments) {
 void run_describe(Job& job, const DescribeArguments& arguments) {
   if (arguments.output.empty() && arguments.craters.empty())
     throw InputError("describe: nothing to write; name -o H.npy or --craters FILE.csv");
+  if (arguments.surface && arguments.output.empty())
+    throw InputError("--surface: has nowhere to write; name -o FILE.json or FILE.csv");
+  if (!arguments.output.empty()) {
+    if (arguments.surface) {
+      require_extension(arguments.output, {".json", ".csv"});
+    } else {
+      require_extension(arguments.output, {".npy"});
+    }
+    require_writable(arguments.output);
+  }
   if (!arguments.craters.empty()) run_craters(job, arguments);
   if (arguments.output.empty()) return;
   if (arguments.surface) return run_surface(job, arguments);
-  require_extension(arguments.output, {".npy"});
-  require_writable(arguments.output);
   const TriangleMesh mesh = read_shape(job, arguments, true);
   DescriptionOptions options = arguments.options.with_seed(job.seed);
   const ChosenDevice chosen = arguments.device.choose(job);
