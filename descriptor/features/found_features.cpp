@@ -48,7 +48,7 @@ Terms terms_of(const CraterFit& fit, double edge) {
 constexpr Terms kCraterWeights{7.235,  -1.680, -4.748, 1.409,  1.022,  -0.389, 6.237,
                                -1.104, -0.155, -0.158, -0.469, -3.028, 0.443,  -2.400};
 
-// The same of boulders, on twelve bodies with boulders, hills and some with craters.
+// These weights are for boulders, of made bodies with boulders, hills and some with craters.
 constexpr Terms kBoulderWeights{-2.282, 0.043,  -1.850, 1.279,   -0.459, -0.076, 0.654,
                                 -1.056, -0.103, -4.804, -13.393, -0.956, -0.870, 0.333};
 

@@ -53,8 +53,7 @@ class RoughGround {
     const bool sun_is_higher = m0 >= m;
     const Slant &low = sun_is_higher ? e : i, &high = sun_is_higher ? i : e;
     const double below = 2.0 - low.e1 - psi / kPi * high.e1;
-    // Of the two directions, the one nearer to the ground is tilted by itself, the other by what it sees of
-    // it.
+    // The direction nearer to the ground is tilted by itself, and the other by what it sees of it.
     const double near = chi_ * (low.cosine + low.sine * tan_ * (low.e2 - half * high.e2) / below);
     const double far = chi_ * (high.cosine + high.sine * tan_ * (cos_psi * low.e2 + half * high.e2) / below);
     m0_ = sun_is_higher ? far : near;
@@ -105,26 +104,31 @@ struct Number {
 };
 using Numbers = std::map<std::string, Number, std::less<>>;
 
-const Numbers& numbers_of(Reflectance::Law law) {
-  static const Numbers none;
-  static const Numbers mcewen{{"L", {&Reflectance::lunar_share, 0.0, 1.0}}};
-  static const Numbers minnaert{{"k", {&Reflectance::k, 0.1, 1.0}}};
-  static const Numbers hapke{{"w", {&Reflectance::w, 1e-4, 0.9999}},
-                             {"g", {&Reflectance::g, -0.95, 0.95}},
-                             {"b0", {&Reflectance::b0, 0.0, 10.0}},
-                             {"h", {&Reflectance::h, 1e-4, 2.0}},
-                             {"theta", {&Reflectance::theta, 0.0, 60.0}}};
-  switch (law) {
-    case Reflectance::Law::kLunarLambert:
-      return mcewen;
-    case Reflectance::Law::kMinnaert:
-      return minnaert;
-    case Reflectance::Law::kAkimov:
-      return none;
-    case Reflectance::Law::kHapke:
-      return hapke;
-  }
-  return none;
+// What a word for a law sets, and the numbers that may follow it.
+struct NamedLaw {
+  Reflectance::Law law;
+  double lunar_share;
+  Numbers numbers;
+};
+
+const std::map<std::string, NamedLaw, std::less<>>& named_laws() {
+  using Law = Reflectance::Law;
+  static const std::map<std::string, NamedLaw, std::less<>> laws{
+      {"rock", {Law::kLunarLambert, 0.35, {}}},
+      {"lambert", {Law::kLunarLambert, 0.0, {}}},
+      {"lommel-seeliger", {Law::kLunarLambert, 1.0, {}}},
+      {"mcewen", {Law::kLunarLambert, 0.35, {{"L", {&Reflectance::lunar_share, 0.0, 1.0}}}}},
+      {"minnaert", {Law::kMinnaert, 0.35, {{"k", {&Reflectance::k, 0.1, 1.0}}}}},
+      {"akimov", {Law::kAkimov, 0.35, {}}},
+      {"hapke",
+       {Law::kHapke,
+        0.35,
+        {{"w", {&Reflectance::w, 1e-4, 0.9999}},
+         {"g", {&Reflectance::g, -0.95, 0.95}},
+         {"b0", {&Reflectance::b0, 0.0, 10.0}},
+         {"h", {&Reflectance::h, 1e-4, 2.0}},
+         {"theta", {&Reflectance::theta, 0.0, 60.0}}}}}};
+  return laws;
 }
 
 }  // namespace
@@ -134,24 +138,14 @@ Reflectance parse_reflectance(const std::string& name, const std::string& words)
   std::string law;
   in >> law;
   Reflectance made;
-  using Law = Reflectance::Law;
-  static const std::map<std::string, Law, std::less<>> kLaws{{"rock", Law::kLunarLambert},
-                                                             {"lambert", Law::kLunarLambert},
-                                                             {"lommel-seeliger", Law::kLunarLambert},
-                                                             {"mcewen", Law::kLunarLambert},
-                                                             {"minnaert", Law::kMinnaert},
-                                                             {"akimov", Law::kAkimov},
-                                                             {"hapke", Law::kHapke}};
-  const auto known = kLaws.find(law);
-  if (known == kLaws.end()) {
+  const auto known = named_laws().find(law);
+  if (known == named_laws().end()) {
     throw InputError(
         fmt::format("{}: \"{:.40}\" is no law of reflection; write {}", name, law, kReflectanceWords));
   }
-  made.law = known->second;
-  if (law == "lambert") made.lunar_share = 0.0;
-  if (law == "lommel-seeliger") made.lunar_share = 1.0;
-  static const Numbers none;
-  const Numbers& numbers = law == "mcewen" || made.law != Law::kLunarLambert ? numbers_of(made.law) : none;
+  made.law = known->second.law;
+  made.lunar_share = known->second.lunar_share;
+  const Numbers& numbers = known->second.numbers;
   for (std::string word, text; in >> word;) {
     const auto number = numbers.find(word);
     if (number == numbers.end()) {

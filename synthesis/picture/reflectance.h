@@ -12,7 +12,6 @@
 // theta.
 #pragma once
 
-#include <array>
 #include <string>
 
 namespace astrolith {
@@ -33,7 +32,7 @@ struct Reflectance {
 // InputError, naming `name`, for words that say no law and for numbers out of range.
 Reflectance parse_reflectance(const std::string& name, const std::string& words);
 
-// The words of parse_reflectance(), for messages and help.
+// The words of parse_reflectance(), for messages.
 inline constexpr const char* kReflectanceWords =
     "rock, lambert, lommel-seeliger, akimov, mcewen L N, minnaert k N, hapke w N g N b0 N h N theta DEGREES";
 

@@ -67,12 +67,11 @@ void PictureOptions::add_to(OptionTable& app) {
       .expected(2)
       .placeholder("ANGLE AZIMUTH")
       .default_text("");
-  app.add_option("--reflectance", reflectance,
-                 "lambert; lommel-seeliger, as of dark dust; rock, .35 of lommel-seeliger and .65 of "
-                 "lambert; akimov; or a "
-                 "law with its numbers: \"mcewen L .5\", \"minnaert k .7\", \"hapke w .2 g -.3 b0 .8 h .05 "
-                 "theta 20\" (theta in "
-                 "degrees)")
+  app.add_option(
+         "--reflectance", reflectance,
+         "lambert; lommel-seeliger, as of dark dust; rock, .35 of lommel-seeliger and .65 of lambert; "
+         "akimov; or a law with its numbers: \"mcewen L .5\", \"minnaert k .7\", "
+         "\"hapke w .2 g -.3 b0 .8 h .05 theta 20\" (theta in degrees)")
       .placeholder("LAW");
   app.add_option("--ambient", ambient, "light from everywhere as a share of sunlight; 0 leaves shadows black")
       .check(in_range(0.0, 10.0));

@@ -15,7 +15,7 @@ struct Geometry {
   double m0, m, phase;
 };
 
-// Of directions above the ground, some of them grazing.
+// The directions lie above the ground, and some of them are grazing.
 Geometry random_geometry(CounterRandom& random) {
   const auto cosine = [&] { return std::pow(random.uniform(1e-3, 1.0), random.uniform() < 0.3 ? 3.0 : 1.0); };
   const double m0 = std::max(1e-3, cosine()), m = std::max(1e-3, cosine()),
