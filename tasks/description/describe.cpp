@@ -1,6 +1,7 @@
 #include "tasks/description/description_jobs.h"
 
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -101,8 +102,7 @@ TriangleMesh read_shape(Job& job, const DescribeArguments& arguments, bool or_po
   return mesh;
 }
 
-void run_surface(Job& job, const DescribeArguments& arguments) {
-  const TriangleMesh mesh = read_shape(job, arguments, false);
+void run_surface(Job& job, const DescribeArguments& arguments, const TriangleMesh& mesh) {
   const SurfaceStatistics surface =
       describe_surface({arguments.shape, mesh}, arguments.surface_options.of(job), job.progress("surface"));
   for (const std::string& remark : surface.remarks) job.say(arguments.shape + ": " + remark);
@@ -113,14 +113,7 @@ void run_surface(Job& job, const DescribeArguments& arguments) {
 }
 
 // Finds the craters, writes them and draws them.
-void run_craters(Job& job, const DescribeArguments& arguments) {
-  require_extension(arguments.craters, {".csv", ".json"});
-  require_writable(arguments.craters);
-  if (!arguments.picture.empty()) {
-    require_extension(arguments.picture, {".png"});
-    require_writable(arguments.picture);
-  }
-  const TriangleMesh mesh = read_shape(job, arguments, false);
+void run_craters(Job& job, const DescribeArguments& arguments, const TriangleMesh& mesh) {
   FeatureOptions options = arguments.features;
   options.seed = job.seed;
   const FoundFeatures found = find_features({arguments.shape, mesh}, options, job.progress("craters"));
@@ -142,23 +135,29 @@ void run_craters(Job& job, const DescribeArguments& arguments) {
   write_png8_rgb(render_preview(mesh, look, job.progress("picture")), arguments.picture);
 }
 
-void run_describe(Job& job, const DescribeArguments& arguments) {
+void require_outputs(const DescribeArguments& arguments) {
   if (arguments.output.empty() && arguments.craters.empty())
-    throw InputError("describe: nothing to write; name -o H.npy or --craters FILE.csv");
+    throw InputError("nothing to write; name -o H.npy or --craters FILE.csv");
   if (arguments.surface && arguments.output.empty())
     throw InputError("--surface: has nowhere to write; name -o FILE.json or FILE.csv");
-  if (!arguments.output.empty()) {
-    if (arguments.surface) {
-      require_extension(arguments.output, {".json", ".csv"});
-    } else {
-      require_extension(arguments.output, {".npy"});
-    }
-    require_writable(arguments.output);
-  }
-  if (!arguments.craters.empty()) run_craters(job, arguments);
+  const auto require = [](const std::filesystem::path& file, std::initializer_list<const char*> extensions) {
+    if (file.empty()) return;
+    require_extension(file, extensions);
+    require_writable(file);
+  };
+  require(arguments.craters, {".csv", ".json"});
+  require(arguments.picture, {".png"});
+  if (arguments.surface) return require(arguments.output, {".json", ".csv"});
+  require(arguments.output, {".npy"});
+}
+
+void run_describe(Job& job, const DescribeArguments& arguments) {
+  require_outputs(arguments);
+  const bool histogram_alone = !arguments.surface && arguments.craters.empty();
+  const TriangleMesh mesh = read_shape(job, arguments, histogram_alone);
+  if (!arguments.craters.empty()) run_craters(job, arguments, mesh);
   if (arguments.output.empty()) return;
-  if (arguments.surface) return run_surface(job, arguments);
-  const TriangleMesh mesh = read_shape(job, arguments, true);
+  if (arguments.surface) return run_surface(job, arguments, mesh);
   DescriptionOptions options = arguments.options.with_seed(job.seed);
   const ChosenDevice chosen = arguments.device.choose(job);
   if (chosen) options.count_pairs = count_pairs_on_gpu;
