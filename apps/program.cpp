@@ -16,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -154,6 +155,14 @@ std::string plain_words(const CLI::ParseError& error, const CLI::App& parser) {
   return text;
 }
 
+// Throws std::bad_alloc where nearly all memory is taken. Libraries that read and transform images abort when
+// they get none for their small tables, without a word.
+void require_some_memory() {
+  constexpr std::size_t kEnough = 16 << 20;
+  void* const volatile room = ::operator new(kEnough);  // a volatile pair is not optimized away
+  ::operator delete(room);
+}
+
 // Hands a row of the table to CLI11, which cuts the command line into words.
 void declare(OptionRow& row, CLI::App& parser) {
   CLI::Option* option = nullptr;
@@ -217,7 +226,7 @@ Program::Program(std::string name, std::string description)
 
 Program::~Program() = default;
 
-int Program::run(int argc, char** argv, const std::function<void()>& work) {
+std::optional<int> Program::parse(int argc, char** argv) {
   CLI::App parser(description_, name_);
   parser.formatter(std::make_shared<HelpFormatter>());
   parser.set_version_flag("--version", tool());
@@ -237,17 +246,23 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   } catch (const InputError& e) {
     return refuse(e.what());
   }
-  heed(SIGINT);
-  heed(SIGTERM);
-  std::signal(SIGALRM, on_alarm);
-  std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
-  std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
-  const ThreadLimit limit(threads);
+  return std::nullopt;
+}
+
+int Program::run(int argc, char** argv, const std::function<void()>& work) {
   const auto ended = [](int status) {
     if (interrupted()) die_of_signal();
     return status;
   };
   try {
+    if (const std::optional<int> status = parse(argc, argv)) return *status;
+    heed(SIGINT);
+    heed(SIGTERM);
+    std::signal(SIGALRM, on_alarm);
+    std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
+    std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
+    require_some_memory();
+    const ThreadLimit limit(threads);
     timed(work);
     end_bar();
     return ended(part_failed_ ? 1 : 0);

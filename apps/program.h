@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ class Program : public Job {
   std::string summary_file;
 
  private:
+  // Sets the options; the status to end with after --help, --version or a command line that is wrong.
+  std::optional<int> parse(int argc, char** argv);
   void timed(const std::function<void()>& work);
   // The library's text of an error, which names options by their words, with the program's names of options.
   std::string naming_options(const std::string& message) const;
