@@ -227,6 +227,10 @@ std::string title_of_column(const std::string& name) {
   return words + unit;
 }
 
+void draw_caption(RgbaImage16& image, int left, int top, const std::string& text) {
+  draw_text(image, left, top, 2, text, {255, 255, 255});
+}
+
 int marks_height(const PreviewOptions& options) {
   if (options.width < kLeastMarkedWidth || options.height < kLeastMarkedHeight) return 0;
   return options.marks.values || has_length_bar(options) ? kStripDots * dot_of(options.height) : 0;

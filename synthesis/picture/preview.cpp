@@ -155,13 +155,16 @@ class Painter {
 
   Vec3f shade(const Vec3f& to_viewer, const Sun& sun, const Vec3f& point, const RayHit& hit,
               const SamplePlace& place) const {
-    const auto [face, normal] = seen_normals(mesh_, normals_, hit, to_viewer);
-    const Vec3f albedo = options_.vertex_colors.empty()
+    const auto [face, smooth] = seen_normals(mesh_, normals_, hit, to_viewer);
+    const MappedPlace mapped =
+        options_.maps ? options_.maps(hit.triangle, hit.u, hit.v) : MappedPlace{smooth};
+    const Vec3f albedo = mapped.albedo ? *mapped.albedo
+                         : options_.vertex_colors.empty()
                              ? kNeutralAlbedo
                              : interpolate_corners(mesh_, options_.vertex_colors, hit);
-    const float facing = std::max(0.0f, dot(normal, to_viewer));
+    const float facing = std::max(0.0f, dot(mapped.normal, to_viewer));
     const Vec3f start = lifted(point, hit, face);
-    return albedo * (sunlight(sun, start, normal, to_viewer, place) + ambient(facing));
+    return albedo * (sunlight(sun, start, mapped.normal, to_viewer, place) + mapped.open * ambient(facing));
   }
 
   // Where secondary rays start: above the planes across the normals of the triangle's corners, so that facets

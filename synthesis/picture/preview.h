@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -28,6 +30,15 @@ struct Sunlight {
 // degrees, and by its azimuth in the picture, degrees counter-clockwise from up.
 Sunlight sun_at_phase(double phase_degrees, double azimuth_degrees);
 
+// What maps show at a place of the mesh, instead of its normals and colours.
+struct MappedPlace {
+  Vec3<float> normal;                                // unit length, in the axes of the mesh
+  std::optional<Vec3<float>> albedo = std::nullopt;  // linear light; absent: that of the mesh
+  float open = 1.0f;                                 // share of the sky that is open: of the ambient light
+};
+// The place in a triangle has the weights u and v of the second and the third corner. Called by many threads.
+using SurfaceMaps = std::function<MappedPlace(std::uint32_t triangle, float u, float v)>;
+
 struct PreviewOptions {
   int width = 1280, height = 960;  // kLeastPictureSide .. kMostPictureSide
   PictureMarks marks;              // none, unless asked for; the views take the rest of the height
@@ -45,6 +56,7 @@ struct PreviewOptions {
   // The linear-light albedo (sRGB components in [0, 1], colormap.h) at each vertex, or empty for neutral
   // grey.
   std::vector<Vec3<float>> vertex_colors;
+  SurfaceMaps maps;                                   // none: the mesh as it is
   Vec3<float> background{0.0030f, 0.0034f, 0.0048f};  // linear-light sRGB
   bool transparent = false;                           // no background
   std::uint64_t seed = 1;                             // decides where samples lie within pixels

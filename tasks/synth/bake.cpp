@@ -162,6 +162,7 @@ void add_skins(Job& job, const MeshSinks& sinks, const MeshPart& part, const Sur
       const BakeSources all{part.field, *labels, colors, occluder->get()};
       const BakedMaps maps = bake_maps(all, {mesh, atlas, skin.tangents}, job.progress("bake"));
       add_maps(job, sinks.file, level, maps, skin);
+      if (sinks.sheet) sinks.sheet->add(sinks.member, level, levels.size(), mesh, skin, maps);
     }
     levels[level].skin = std::make_shared<const MeshSkin>(std::move(skin));
   }

@@ -84,16 +84,18 @@ bool Manifest::has(std::uint64_t member, const std::string& family,
   const auto found = entries_.find(member);
   if (found == entries_.end() || found->second.family != family) return false;
   const std::vector<ManifestFile>& stated = found->second.files;
-  // Names and sizes first: they cost nothing.
-  const auto alike = [&](const ManifestFile& s, const fs::path& file) {
-    std::error_code error;
-    return s.name == name_of(file) && fs::is_regular_file(file, error) &&
-           fs::file_size(file, error) == s.bytes;
+  const auto is_stated = [&](const fs::path& file) {
+    return std::ranges::find(stated, name_of(file), &ManifestFile::name) != stated.end();
   };
-  return std::equal(stated.begin(), stated.end(), files.begin(), files.end(), alike) &&
-         std::equal(
-             stated.begin(), stated.end(), files.begin(),
-             [](const ManifestFile& s, const fs::path& file) { return s.sha256 == sha256_of_file(file); });
+  const fs::path folder = file_.parent_path();
+  const auto has_size = [&](const ManifestFile& s) {
+    std::error_code error;
+    return fs::is_regular_file(folder / s.name, error) && fs::file_size(folder / s.name, error) == s.bytes;
+  };
+  const auto is_whole = [&](const ManifestFile& s) { return s.sha256 == sha256_of_file(folder / s.name); };
+  // Names and sizes first: they cost nothing.
+  return std::ranges::all_of(files, is_stated) && std::ranges::all_of(stated, has_size) &&
+         std::ranges::all_of(stated, is_whole);
 }
 
 bool Manifest::has_other_family(const std::string& family) const {

@@ -33,8 +33,8 @@ class Manifest {
 
   int unreadable_lines() const { return unreadable_lines_; }
 
-  // Whether the member has been finished for this family with files of these names (as given to file_of),
-  // which all are there still, byte for byte.
+  // Whether the member has been finished for this family with files of these names (as given to file_of) and
+  // perhaps others, which all are there still, byte for byte.
   bool has(std::uint64_t member, const std::string& family,
            const std::vector<std::filesystem::path>& files) const;
 

@@ -92,6 +92,18 @@ std::vector<fs::path> names_of(MeshSinks sinks) {
   return names;
 }
 
+// The files that the mesh job of a member has written beside those of names_of(): its levels and maps.
+std::vector<fs::path> files_beside(const fs::path& mesh, const Json& summary) {
+  std::vector<fs::path> names;
+  const auto add = [&](const Json& name) {
+    const fs::path file = mesh.parent_path() / name.get<std::string>();
+    if (file != mesh && std::ranges::find(names, file) == names.end()) names.push_back(file);
+  };
+  for (const Json& level : summary.value("levels", Json::array())) add(level["file"]);
+  for (const Json& maps : summary.value("maps", Json::array())) std::ranges::for_each(maps["files"], add);
+  return names;
+}
+
 // The SHA-256 of what all members have in common: the recipe and the options that change files. A file that
 // an option reads counts by its content.
 std::string hash_of_family(const Job& job, const Recipe& recipe) {
@@ -172,6 +184,8 @@ class MemberMaker {
     if (file_.empty()) return line;
     std::vector<ManifestFile> written;
     for (const fs::path& name : names_of(mesh.sinks)) written.push_back(manifest_.file_of(name));
+    for (const fs::path& name : files_beside(mesh.sinks.file, job.summary))
+      written.push_back(manifest_.file_of(name));
     line["files"] = to_json(written);
     line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -254,7 +268,7 @@ Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range, i
 // How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
 // is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
 int members_at_once(const MeshJob& mesh, std::uint64_t members) {
-  constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOnGpu = 1.5e9;
+  constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOfTexel = 60.0, kBytesOnGpu = 1.5e9;
   constexpr double kTrianglesOfSquare =
       5.0;  // of a mesh for the square of its resolution, with some roughness
   const MeshSpec& spec = mesh.spec;
@@ -262,7 +276,8 @@ int members_at_once(const MeshJob& mesh, std::uint64_t members) {
       spec.triangles > 0.0 ? spec.triangles : kTrianglesOfSquare * spec.resolution * spec.resolution;
   if (triangles > kMostTriangles || mesh.max_memory_gb > 0.0) return 1;
   double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
-  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles));
+  const double map_bytes = kBytesOfTexel * mesh.sinks.bake * mesh.sinks.bake;
+  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles + map_bytes));
   if (mesh.device.has_gpu())
     most = std::min(most, static_cast<double>(probe_device().memory_bytes) / kBytesOnGpu);
   return std::max(1, static_cast<int>(most));
@@ -369,6 +384,14 @@ void check_members(const MembersRequest& request, MeshJob mesh) {
         "--write-recipe without -o keeps recipes alone; leave out --preview, --preview-maps and "
         "--feature-list, "
         "or add -o");
+}
+
+void check_sheet(const MembersRequest& request) {
+  if (request.range.empty()) return;
+  const MemberRange range = parse_range(request.range);
+  if (range.end - range.begin > kMostOnSheet)
+    throw InputError(
+        fmt::format("--sheet: shows {} members at most; ask for fewer, or leave it out", kMostOnSheet));
 }
 
 void make_members(Job& job, const MembersRequest& request, const MeshJob& mesh, const MemberSource& source) {

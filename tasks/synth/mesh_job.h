@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
 #include "tasks/synth/body_mesh.h"
+#include "tasks/synth/maps_sheet.h"
 #include "tasks/synth/preview.h"
 
 namespace astrolith {
@@ -35,8 +37,9 @@ struct KeptMesh {
 // What becomes of a mesh. Empty names stand for nothing.
 struct MeshSinks {
   std::filesystem::path file = {};
-  int levels = 1;  // of detail, in files
-  int bake = 0;    // side of the baked maps beside the file, texels; 0 = none
+  int levels = 1;                              // of detail, in files
+  int bake = 0;                                // side of the baked maps beside the file, texels; 0 = none
+  std::shared_ptr<MapsSheet> sheet = nullptr;  // receives pictures of the baked maps
   PreviewRequest preview = {};
   std::filesystem::path height_map = {};        // GeoTIFF of a patch
   std::filesystem::path hazard_map = {};        // GeoTIFF of what is dangerous to a lander on a patch

@@ -52,6 +52,7 @@ struct SynthOptions {
   std::string count;  // of bodies, an option that --members replaces
   int finer = 0;      // levels of reliefs below their models
   double vary = 0.0;  // 0 = the recipe itself
+  fs::path sheet;     // a picture of the baked maps; empty = none
   fs::path page;      // the folder of a page; empty = none
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
@@ -135,6 +136,15 @@ void declare_options(Job& job, SynthOptions& options) {
       .writes([](const auto& words) { return page_files(words.front()); });
   declare_texture_options(job, options.texture);
   declare_members_options(job, options.members);
+  job.options
+      .add_option("--sheet", options.sheet,
+                  "with --bake: also a sheet of pictures with a row for each body: its finest mesh, its "
+                  "coarsest one without and with its maps, and the maps; of up to " +
+                      std::to_string(kMostOnSheet) + " members")
+      .needs(job.options.option("--bake"))
+      .excludes(job.options.option("--manifest"))
+      .placeholder("FILE.png")
+      .writes();
   // A texture has its own options; all others are of the mesh.
   static constexpr const char* kOfTextures[] = {
       "recipe",       "output",  "base",       "base-lengths", "seed", "threads", "quiet", "summary", "count",
@@ -143,7 +153,7 @@ void declare_options(Job& job, SynthOptions& options) {
     if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
-  for (const char* of_one : {"--texture", "--tile", "--lod", "--bake", "--page"}) {
+  for (const char* of_one : {"--texture", "--tile", "--page"}) {
     job.options.option("--members").excludes(job.options.option(of_one));
   }
   job.options.option("--seed")
@@ -242,6 +252,11 @@ void check_outputs(const Job& job, const SynthOptions& options) {
     throw InputError(
         "--count: is gone; write --members A:B, bodies A to B - 1, with {member} in the names of files");
   }
+  if (!options.sheet.empty()) {
+    require_extension(options.sheet, {".png"});
+    if (single) require_writable(options.sheet);
+    check_sheet(options.members);
+  }
   check_finish(options.finish);
   if (!options.mesh.spec.gravity.empty()) question_density(job, options.mesh.spec.gravity[0]);
   check_members(options.members, options.mesh);
@@ -282,6 +297,10 @@ Recipe grounded(Job& job, const SynthOptions& options, const FamilyMember& membe
                 const BodyPopulation& population) {
   report_draw(job, member);
   return with_ground(job, options.draw, member, population, options.recipe);
+}
+
+void write_sheet(const SynthOptions& options) {
+  if (options.mesh.sinks.sheet) options.mesh.sinks.sheet->write(options.sheet);
 }
 
 void synthesize(Job& job, const SynthOptions& options) {
@@ -325,13 +344,15 @@ void synthesize(Job& job, const SynthOptions& options) {
       return member;
     };
     const auto work = mesh.only_predict ? predict_members : make_members;
-    return work(job, options.members, mesh, {whole, file, draw});
+    work(job, options.members, mesh, {whole, file, draw});
+    return write_sheet(options);
   }
   const Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
   if (!mesh.sinks.recipe.empty()) write_loaded_recipe(made, mesh.sinks.recipe);
   if (!options.page.empty()) write_page(made, options.recipe, options.page, prefixes);
   if (!mesh.sinks.wanted() && !mesh.only_predict) return;
   make_mesh(job, mesh, made, file);
+  write_sheet(options);
 }
 
 }  // namespace
@@ -345,6 +366,7 @@ JobWork declare_called_synth(Job& job, SynthCaller caller) {
   declare_options(job, *options);
   return [&job, options] {
     if (!options->members.folder.empty()) options->mesh.sinks.file = options->members.folder / "{member}.ply";
+    if (!options->sheet.empty()) options->mesh.sinks.sheet = std::make_shared<MapsSheet>();
     synthesize(job, *options);
   };
 }

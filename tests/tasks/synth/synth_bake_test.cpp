@@ -1,6 +1,8 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "geometry/io/mesh_io.h"
+#include "synthesis/picture/image_file.h"
 #include "tests/tasks/synth/synth_runner.h"
 
 namespace astrolith {
@@ -40,6 +42,32 @@ TEST_F(SynthBake, WritesMapsAndMaterialsOfEachLevel) {
                 text(level == 0 ? "out_normal.png" : "out_lod1_normal.png"));
     EXPECT_TRUE(material.contains("occlusionTexture"));
   }
+}
+
+// The coarsest mesh with its maps looks more like the finest one than it does without them.
+TEST_F(SynthBake, SheetShowsWhatMapsDo) {
+  write("hills.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]},
+    "layers": [{"type": "simplex", "amplitude": 0.02, "frequency": 3, "octaves": 1}]})");
+  succeed("hills.json -o out.glb --resolution 128 --uv charts --bake 1024 --lod 4 --sheet sheet.png");
+  const std::string png = text("sheet.png");
+  const GreyPng sheet = decode_grey_png({png.begin(), png.end()}, "sheet.png", 1, 1 << 14);
+  EXPECT_EQ(sheet.width, 7 * 256);
+  EXPECT_EQ(sheet.height, 24 + 256);
+  const auto difference = [&](int column) {
+    double sum = 0.0;
+    for (int y = 24; y < sheet.height; ++y) {
+      for (int x = 0; x < 256; ++x) {
+        const auto at = [&](int panel) {
+          return double(sheet.values[static_cast<std::size_t>(y * sheet.width + panel * 256 + x)]);
+        };
+        sum += std::abs(at(column) - at(0));
+      }
+    }
+    return sum;
+  };
+  EXPECT_LT(difference(2), 0.6 * difference(1));
+  refuse("r.json -o out.glb --sheet sheet.png", "--sheet requires --bake");
 }
 
 TEST_F(SynthBake, HasTheSameBytesForThreads) {

@@ -56,6 +56,24 @@ TEST_F(SynthMembers, OptionsOfTheCameraWinOverTheFamily) {
   EXPECT_FALSE(manifest("other").at(0).contains("view"));
 }
 
+// Levels and maps are files of the member like its mesh: the manifest tells when one of them is lost.
+TEST_F(SynthMembers, HaveLevelsAndMaps) {
+  const std::string pack =
+      "r.json --members 0:2 -o set/{member}.obj --manifest set/set.jsonl --resolution 32 --lod 2 --uv charts "
+      "--bake 128";
+  expect_made(run(pack), "2 made");
+  const Json files = manifest().at(1)["files"];
+  EXPECT_EQ(files.size(), 12u);  // two meshes with five maps each
+  EXPECT_EQ(files.back()["name"], "0000001_lod1_label.png");
+  expect_made(run(pack), "0 made, 2 already there");
+  std::filesystem::remove(folder_ / "set/0000001_lod1_normal.png");
+  expect_made(run(pack), "1 made, 1 already there");
+  refuse("r.json --members 0:2 -o set/{member}.glb --uv charts --bake 128 --sheet s.png --manifest m.jsonl",
+         "--sheet excludes --manifest");
+  refuse("r.json --members 0:61 -o set/{member}.glb --uv charts --bake 128 --sheet s.png",
+         "--sheet: shows 60 members at most");
+}
+
 TEST_F(SynthMembers, EachHasFilesAndALine) {
   expect_made(make("3:5", "--preview set/{member}.png --write-recipe set/{member}.json"),
               "2 made, 0 already there, 0 failed, of 2");
