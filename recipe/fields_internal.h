@@ -307,6 +307,13 @@ void visit_fields(FieldVisitor& v, LayerUse& use);
 void visit_fields(FieldVisitor& v, Locality& locality);
 void visit_fields(FieldVisitor& v, LayerMask& mask);
 void visit_fields(FieldVisitor& v, Combination& combination);
+void visit_fields(FieldVisitor& v, AlbedoByElevation& by);
+void visit_fields(FieldVisitor& v, GroundAlbedo& albedo);
+void visit_fields(FieldVisitor& v, LayerAlbedo& albedo);
+void visit_fields(FieldVisitor& v, CraterAlbedo& albedo);
+void visit_fields(FieldVisitor& v, BoulderAlbedo& albedo);
+// The rules for albedos that concern the rest of the recipe.
+void check_albedos(const Recipe& recipe, const Place& place);
 // The rules for a layer that concern other layers or the body.
 void check_layer_uses(const Recipe& recipe, const Place& place);
 

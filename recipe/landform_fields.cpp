@@ -121,6 +121,7 @@ void visit_fields(FieldVisitor& v, CraterLayer& layer) {
   v.field("complex_from", layer.complex_from, kPositive);
   v.field("craters", layer.craters);
   v.field("population", layer.population);
+  v.field("albedo", layer.albedo);
 }
 
 void visit_fields(FieldVisitor& v, Boulder& boulder) {
@@ -155,6 +156,7 @@ void visit_fields(FieldVisitor& v, BoulderLayer& layer) {
   v.field("boulders", layer.boulders);
   v.field("population", layer.population);
   v.field("gravity", layer.gravity);
+  v.field("albedo", layer.albedo);
 }
 
 }  // namespace astrolith

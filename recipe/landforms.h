@@ -130,6 +130,7 @@ struct CraterLayer {
   std::optional<double> complex_from;  // length units, > 0; absent: all craters are simple
   std::vector<Crater> craters;
   std::optional<CraterPopulation> population;
+  std::optional<CraterAlbedo> albedo;  // absent: craters show the ground's
 
   StatedHeight stated_height() const { return {craters.empty() ? "population" : "craters", 0.0}; }
   // The size of the smallest crater that the layer lists, length units.
@@ -192,6 +193,7 @@ struct BoulderLayer {
   std::vector<Boulder> boulders;
   std::optional<BoulderPopulation> population;
   std::optional<LocalGravity> gravity;  // absent: boulders stand along the normal
+  std::optional<BoulderAlbedo> albedo;  // absent: boulders show the ground's
 
   StatedHeight stated_height() const { return {boulders.empty() ? "population" : "boulders", 0.0}; }
   // The size of the smallest boulder that the layer lists, length units.

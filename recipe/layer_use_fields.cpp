@@ -100,6 +100,7 @@ void visit_fields(FieldVisitor& v, LayerUse& use) {
   v.field("locality", use.locality);
   v.field("mask", use.mask);
   v.field_if(use.combination.kind != Combine::kAdd, "combine", use.combination);
+  v.field("albedo", use.albedo);
 }
 
 void check_layer_uses(const Recipe& recipe, const Place& place) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "numerics/vec3.h"
+#include "recipe/albedo.h"
 #include "recipe/body.h"
 #include "recipe/exemplar_image.h"
 #include "recipe/layer_traits.h"
@@ -76,6 +77,7 @@ struct LayerUse {
   std::optional<Locality> locality;  // absent: the layer acts everywhere
   std::optional<LayerMask> mask;     // absent: no other layer weights it
   Combination combination;
+  std::optional<LayerAlbedo> albedo;  // absent: the ground keeps its own
 };
 
 // A seed, 0 .. kMaxLayerSeed, that replaces the layer's place in the list for its random numbers. A layer

@@ -93,7 +93,20 @@ inline bool has_color(const Layer& layer) {
       layer);
 }
 
-// Whether the layer paints the surface of a body.
+// Whether the layer changes the albedo of the ground.
+inline bool has_albedo(const Layer& layer) {
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.albedo; }) {
+          return l.albedo.has_value();
+        } else {
+          return l.use.albedo.has_value();
+        }
+      },
+      layer);
+}
+
+// Whether the layer paints the surface of a body with its own colours.
 inline bool paints(const Layer& layer) {
   return std::visit(
       [](const auto& l) {
@@ -178,6 +191,7 @@ struct Recipe {
   std::optional<MetaballBody> body;          // fit_gabor writes recipes without a body
   std::optional<BodyPopulation> population;  // only in a recipe without a body
   std::vector<Layer> layers;                 // at least one in a recipe without a body and a population
+  std::optional<GroundAlbedo> albedo;        // absent: the body has no colour but what layers paint
   std::optional<Erosion> erosion;            // only in a recipe with a body
   std::optional<Family> family;  // what differs between members; the recipe itself stands for none
 };

@@ -181,6 +181,8 @@ void visit_fields(FieldVisitor& v, Recipe& recipe) {
   v.field("population", recipe.population);
   v.field("layers", recipe.layers);
   v.rule(check_layer_uses, recipe);
+  v.field("albedo", recipe.albedo);
+  v.rule(check_albedos, recipe);
   v.field("erosion", recipe.erosion);
   v.field("family", recipe.family);
   v.rule(check_family, recipe);

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "synthesis/exemplar/exemplar_colors.h"
+#include "synthesis/field/surface_paints.h"
 #include "synthesis/field/field_model_internal.h"
 
 namespace astrolith {
@@ -94,14 +94,19 @@ void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
 // that is no layer of craters.
 void evaluate_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
 
-// Blends the colours of a layer that paints over color[i] at the points of a batch. Expects the heights that
-// the layer's mask needs to be kept in the batch.
+// Paints what a layer paints over the points of a batch. Expects the heights that the layer's mask needs to
+// be kept in the batch.
 void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
-                 Vec3f* color);
+                 PaintedPoint* points);
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const NoiseTone& tone, Batch& b,
+                 PaintedPoint* points);
+// Adds the tones of craters, each over those of older ones of its layer.
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const CraterTone& tone, Batch& b,
+                 PaintedPoint* points);
 
 // FieldBlock::paint() at n <= kBatch points of a block. `local` is as below.
-void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
-                 const PointArrays& at, Vec3f* color, const LocalPoints* local = nullptr);
+void paint_batch(const FieldModel& model, const BatchLists& lists, const SurfacePaints& paints, int n,
+                 const PointArrays& at, PaintedPoint* points, const LocalPoints* local = nullptr);
 
 // FieldBlock::evaluate_stages() at n <= kBatch points of a block. `local` is as below.
 void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,

@@ -101,6 +101,30 @@ void join_boulder(const FieldModel& model, std::uint32_t number, int n, const Po
                value);
 }
 
+// Paints the points that lie on boulders: where a boulder's surface is above the ground and other boulders.
+void paint_boulders(const FieldModel& model, std::span<const BoulderTone> tones, const PointArrays& at,
+                    const LocalPoints* local, const Batch& b, PaintedPoint* points) {
+  std::array<float, kBatch> highest;
+  const auto n = static_cast<std::size_t>(b.n);
+  for (std::size_t i = 0; i < n; ++i) highest[i] = b.distance[i] + b.elevation[i];
+  for (const std::uint32_t k : boulders_around(model, b.n, at)) {
+    const bool in_patch = local != nullptr && k < model.patch_boulders.size() && model.patch_boulders[k];
+    const BoulderKernel& kernel = in_patch ? *model.patch_boulders[k] : model.boulders[k].kernel;
+    const PointArrays& p = in_patch ? local->local : at;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3f u = boulder_coordinates(kernel, p.x[i], p.y[i], p.z[i]);
+      if (!(squared_length(u.x, u.y, u.z) < kernel.reach_squared)) continue;
+      const float distance = boulder_distance(kernel, u);
+      if (!(distance > highest[i])) continue;
+      highest[i] = distance;
+      points[i].on_boulder = tones[k].covers;
+      if (!tones[k].covers) continue;
+      points[i].color = tones[k].color;
+      points[i].tone = tones[k].tone;
+    }
+  }
+}
+
 }  // namespace
 
 void Batch::move(std::size_t from, std::size_t to) {
@@ -172,16 +196,29 @@ void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, co
   }
 }
 
-void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
-                 const PointArrays& at, Vec3f* color, const LocalPoints* local) {
+void paint_batch(const FieldModel& model, const BatchLists& lists, const SurfacePaints& paints, int n,
+                 const PointArrays& at, PaintedPoint* points, const LocalPoints* local) {
   Batch b;
   begin_batch(model, lists, n, at, local, b);
-  auto paint = paints.begin();
-  for (std::size_t i = 0; i < model.layers.size() && paint != paints.end(); ++i) {
-    if (paint->layer == i) paint_layer(model, model.layers[i], *paint++, b, color);
+  auto image = paints.images.begin();
+  auto noise = paints.noises.begin();
+  auto craters = paints.craters.begin();
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    const FieldLayer& layer = model.layers[i];
     b.spots = spots_of(lists.spots, i);
-    apply_layer(model, model.layers[i], b);
+    const auto paint = [&](auto& next, const auto end) {
+      if (next != end && next->layer == i) paint_layer(model, layer, *next++, b, points);
+    };
+    paint(image, paints.images.end());
+    paint(noise, paints.noises.end());
+    paint(craters, paints.craters.end());
+    apply_layer(model, layer, b);
   }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+    points[k].up = -normalized(Vec3f{b.gradient.x[k], b.gradient.y[k], b.gradient.z[k]});
+    points[k].elevation = b.elevation[k];
+  }
+  if (!paints.boulders.empty()) paint_boulders(model, paints.boulders, at, local, b, points);
 }
 
 float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p) {

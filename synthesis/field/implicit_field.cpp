@@ -106,12 +106,13 @@ void FieldBlock::evaluate_stages(const Vec3d* origin, std::span<const float> x, 
       });
 }
 
-void FieldBlock::paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
-                       std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const {
+void FieldBlock::paint(const SurfacePaints& paints, const Vec3d* origin, std::span<const float> x,
+                       std::span<const float> y, std::span<const float> z,
+                       std::span<PaintedPoint> points) const {
   for_each_batch(
-      origin, color.size(), x, y, z,
+      origin, points.size(), x, y, z,
       [&](std::size_t i, int n, const BatchLists& lists, const PointArrays& at, const LocalPoints* local) {
-        paint_batch(*model_, lists, paints, n, at, &color[i], local);
+        paint_batch(*model_, lists, paints, n, at, &points[i], local);
       });
 }
 

@@ -34,7 +34,8 @@ namespace astrolith {
 struct GaborCacheUse;  // synthesis/gabor/gabor_bricks.h
 struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
-struct LayerPaint;     // synthesis/exemplar/exemplar_colors.h
+struct SurfacePaints;  // synthesis/field/surface_paints.h
+struct PaintedPoint;   // synthesis/field/surface_paints.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 
@@ -121,11 +122,11 @@ class FieldBlock {
                        std::span<const float> z,
                        const std::function<void(std::size_t, const FieldStage&)>& visit) const;
 
-  // Blends the colours of painting layers over color[i] in their order, at points within the box; full scale
-  // is 1. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the
+  // Paints over points[i].color and tone in the order of the layers, at points within the box, and says what
+  // lies there. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the
   // body's frame.
-  void paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
-             std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const;
+  void paint(const SurfacePaints& paints, const Vec3d* origin, std::span<const float> x,
+             std::span<const float> y, std::span<const float> z, std::span<PaintedPoint> points) const;
 
   const Box& box() const { return box_; }
 

@@ -228,16 +228,59 @@ void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const Lay
 
 }  // namespace
 
+namespace {
+
+// Covers a share of the ground at a point, with the tone that it had.
+void cover(const Vec3f& color, float share, PaintedPoint& point) {
+  const auto blend = [share](float below, float above) {
+    return math::fma(share, above, (1.0f - share) * below);
+  };
+  point.color = {blend(point.color.x, color.x), blend(point.color.y, color.y), blend(point.color.z, color.z)};
+  point.tone *= 1.0f - share;
+}
+
+}  // namespace
+
 void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
-                 Vec3f* color) {
+                 PaintedPoint* points) {
   std::array<Vec3f, kBatch> painted;
   evaluate_colors(model, layer, paint, b, painted.data());
   const float* weight = layer_weights(model, layer.join, b);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i)
+    cover(painted[i], weight == nullptr ? 1.0f : weight[i], points[i]);
+}
+
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const NoiseTone& tone, Batch& b,
+                 PaintedPoint* points) {
+  if (tone.per_height != 0.0f) evaluate_layer(model, layer, b);
+  const float* weight = layer_weights(model, layer.join, b);
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
     const float w = weight == nullptr ? 1.0f : weight[i];
-    const auto blend = [w](float below, float above) { return math::fma(w, above, (1.0f - w) * below); };
-    color[i] = {blend(color[i].x, painted[i].x), blend(color[i].y, painted[i].y),
-                blend(color[i].z, painted[i].z)};
+    if (tone.covers) cover(tone.color, w, points[i]);
+    if (tone.per_height == 0.0f) continue;
+    const float gain = w * tone.per_height * b.height[i];
+    points[i].tone += Vec3f{gain, gain, gain};
+  }
+}
+
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const CraterTone& tone, Batch& b,
+                 PaintedPoint* points) {
+  const CraterRelief& relief = *layer.noise.get_if<CraterRelief>();
+  const PatchCraters* local = craters_in_patch(model, relief, b);
+  const PointArrays p = places_of(model, relief, local != nullptr, b);
+  const BoxTree& tree = local ? local->tree : model.crater_trees[relief.list];
+  const CraterKernel* craters = model.tables.arrays[(local ? local->relief : relief).craters];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+    float share = 0.0f;
+    const Vec3d at{double{p.x[i]}, double{p.y[i]}, double{p.z[i]}};
+    for (const std::uint32_t k : tree.touching({at, at})) {
+      const CraterKernel& c = craters[k];
+      const float squared = crater_distance_squared(c, p.x[i], p.y[i], p.z[i]);
+      if (!(squared < c.extent_squared)) continue;
+      const float out = squared < 1.0f ? 1.0f : (c.extent - math::sqrt(squared)) * c.inverse_flank_width;
+      share = math::fma(out * out, tone.freshness[k], (1.0f - out * out) * share);
+    }
+    points[i].tone += share * tone.fresh;
   }
 }
 

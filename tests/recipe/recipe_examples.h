@@ -31,7 +31,8 @@ inline const std::string kCompleteRecipe = R"({
   },
   "layers": [
     {"type": "simplex", "name": "grit", "amplitude": 0.02, "frequency": 3, "octaves": 6, "gain": 0.5,
-     "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1, "gradient_modulation": 0.25},
+     "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1, "gradient_modulation": 0.25,
+     "albedo": {"normal": 0.04, "color": [1, 1, 0.9], "contrast": 0.25}},
     {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32,
      "exemplar_mean": 0.4, "exemplar_rms": 0.1,
      "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]},
@@ -41,7 +42,7 @@ inline const std::string kCompleteRecipe = R"({
      "density": 2, "exponent": 3, "seed": 7, "even": true, "lattice": [[1, 0, 0], [0.5, 0.75, 0], [0, 0, 1]],
      "parts": [{"center": [0.5, 0, 0], "axes": [1, 0.5, 1], "turn": [0, 0, 30], "weight": -0.5}, {}], "mask": {"layer": "grit", "from": 0.01, "to": -0.01}},
     {"type": "craters", "complex_from": 0.8, "simple": {"depth": 0.15, "extent": 3, "flank": 2},
-     "complex": {"terraces": 2, "peak_height": 0.05},
+     "complex": {"terraces": 2, "peak_height": 0.05}, "albedo": {"fresh": 1.5, "color": [1, 1, 1.125]},
      "craters": [{"direction": [0, 0, 1], "diameter": 0.9, "age": 2},
                  {"position": [1, 0, 0], "diameter": 0.5, "depth": 0.06, "rim_height": 0.01}],
      "population": {"count": 40, "least_diameter": 0.05, "greatest_diameter": 0.375, "degradation": 0.5,
@@ -51,7 +52,8 @@ inline const std::string kCompleteRecipe = R"({
      "boulders": [{"direction": [0, 1, 1], "axes": [0.3, 0.2, 0.15], "heading": 30, "tilt": 10, "burial": 0.4}],
      "population": {"density": 2.5, "least_diameter": 0.02, "greatest_diameter": 0.125, "least_burial": 0.2,
                     "mask": {"layer": "grit", "from": 0.005, "to": -0.005, "over": 0.5}, "by_cells": true},
-     "gravity": {"density": 1900, "rotation_period": 7.6}},
+     "gravity": {"density": 1900, "rotation_period": 7.6},
+     "albedo": {"normal": 0.045, "spread": 0.25, "bright_share": 0.02, "bright": 2.5}},
     {"type": "sparse", "amplitude": 0.05, "cell_size": 0.5, "levels": 3, "threshold": 0.25, "merged": true},
     {"type": "random_phase", "height_rms": 0.01, "waves": 8, "frequency_min": 2, "frequency_max": 5.5, "randomness": 0.5,
      "combine": {"type": "blend", "operator": "intersection", "width": 0.002}},
@@ -60,6 +62,7 @@ inline const std::string kCompleteRecipe = R"({
     {"type": "phasor", "amplitude": 0.01, "frequency": 6, "cell_size": 0.75, "profile": "square", "direction": [0, 1, 0],
      "combine": {"type": "warp", "direction": [0.5, 0, 2]}}
   ],
+  "albedo": {"normal": 0.05, "color": [1.25, 1, 0.75], "steep": 1.5, "elevation": {"from": 0, "to": -0.1, "factor": 0.8}},
   "erosion": {"talus_angle": 35, "iterations": 500, "density": 1500, "rotation_period": 4.3},
   "family": {"any_view": true, "any_sun": true, "fields": [
     {"field": "layers[0].amplitude", "distribution": "normal", "low": 0.01, "high": 0.05, "mean": 0.03, "deviation": 0.01},
@@ -92,6 +95,8 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("lobes")", R"("LOBES")", R"(layers[1].LOBES: unknown field; known are)"},
       {R"("height_rms")", R"("height\nrms")", R"(layers[1].height\nrms: unknown field; did you mean)"},
       // Missing fields.
+      {R"("albedo": {"normal": 0.05, "color": [1.25, 1, 0.75], "steep": 1.5, "elevation": {"from": 0, "to": -0.1, "factor": 0.8}},)",
+       R"()", R"(layers[0].albedo: changes that of the ground, which the recipe does not state)", false},
       {R"(, "width": 0.125)", R"()", R"(layers[3].locality.width: is missing)"},
       {R"("format_version": 1,)", R"()", R"(format_version: is missing)"},
       {R"(, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"()",

@@ -137,6 +137,11 @@ Combination combination(Combine kind) {
 std::map<std::string, Fields> described() {
   return {{"document", fields_of(Recipe{})},
           {"provenance", fields_of(Provenance{})},
+          {"ground_albedo", fields_of(GroundAlbedo{})},
+          {"albedo_by_elevation", fields_of(AlbedoByElevation{})},
+          {"layer_albedo", fields_of(LayerAlbedo{})},
+          {"crater_albedo", fields_of(CraterAlbedo{})},
+          {"boulder_albedo", fields_of(BoulderAlbedo{})},
           {"erosion", fields_of(Erosion{})},
           {"family", fields_of(Family{})},
           {"drawn_field", fields_of(DrawnField{})},

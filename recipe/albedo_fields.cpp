@@ -1,0 +1,69 @@
+// Lists of fields of a recipe's albedos, with their rules.
+#include <cmath>
+
+#include "recipe/fields_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr NumberLimits kNormal = range(1e-3, 1.0), kFactor = range(0.1, 10.0), kColor = range(0.0, 4.0);
+
+void check_elevations(const AlbedoByElevation& by, const Place& place) {
+  if (!(std::fabs(by.to - by.from) >= kMinPositive))
+    place.field("to").fail("is too near to `from` for a border; move one of them");
+}
+
+const LayerAlbedo* noise_albedo(const Layer& layer) {
+  const LayerUse* const use = use_of(layer);
+  return use != nullptr && use->albedo ? &*use->albedo : nullptr;
+}
+
+}  // namespace
+
+void visit_fields(FieldVisitor& v, AlbedoByElevation& by) {
+  v.required("from", by.from, kAnyNumber);
+  v.required("to", by.to, kAnyNumber);
+  v.required("factor", by.factor, kFactor);
+  v.rule(check_elevations, by);
+}
+
+void visit_fields(FieldVisitor& v, GroundAlbedo& albedo) {
+  v.required("normal", albedo.normal, kNormal);
+  v.field("color", albedo.color, kColor);
+  v.field("steep", albedo.steep, kFactor);
+  v.field("elevation", albedo.elevation);
+}
+
+void visit_fields(FieldVisitor& v, LayerAlbedo& albedo) {
+  v.field("normal", albedo.normal, kNormal);
+  v.field("color", albedo.color, kColor);
+  v.field("contrast", albedo.contrast, range(-5.0, 5.0));
+}
+
+void visit_fields(FieldVisitor& v, CraterAlbedo& albedo) {
+  v.field("fresh", albedo.fresh, kFactor);
+  v.field("color", albedo.color, kFactor);
+}
+
+void visit_fields(FieldVisitor& v, BoulderAlbedo& albedo) {
+  v.required("normal", albedo.normal, kNormal);
+  v.field("spread", albedo.spread, range(0.0, 2.0));
+  v.field("bright_share", albedo.bright_share, kShare);
+  v.field("bright", albedo.bright, kFactor);
+  v.field("color", albedo.color, kColor);
+}
+
+void check_albedos(const Recipe& recipe, const Place& place) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    const Layer& layer = recipe.layers[i];
+    if (!has_albedo(layer)) continue;
+    const Place at = place.field("layers").element(i).field("albedo");
+    if (recipe.body && !recipe.albedo)
+      at.fail("changes that of the ground, which the recipe does not state; add `albedo` to the recipe");
+    const LayerAlbedo* const noise = noise_albedo(layer);
+    if (noise != nullptr && noise->contrast != 0.0 && !has_height(layer))
+      at.field("contrast").fail("needs heights, and the layer has none; give it some, or leave it out");
+  }
+}
+
+}  // namespace astrolith
