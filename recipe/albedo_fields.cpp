@@ -54,10 +54,11 @@ void visit_fields(FieldVisitor& v, BoulderAlbedo& albedo) {
 }
 
 void check_albedos(const Recipe& recipe, const Place& place) {
+  const Place layers = place.field("layers");
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     const Layer& layer = recipe.layers[i];
     if (!has_albedo(layer)) continue;
-    const Place at = place.field("layers").element(i).field("albedo");
+    const Place its_layer = layers.element(i), at = its_layer.field("albedo");
     if (recipe.body && !recipe.albedo)
       at.fail("changes that of the ground, which the recipe does not state; add `albedo` to the recipe");
     const LayerAlbedo* const noise = noise_albedo(layer);
