@@ -140,6 +140,7 @@ struct TileWork {
   std::vector<VertexLabel> labels;
   std::vector<std::int16_t> label_of;  // the label of each point
   std::vector<VertexColor> colors;
+  std::vector<Vec3f> albedo;
 };
 
 class MapBaker {
@@ -163,6 +164,7 @@ class MapBaker {
       maps_.color.resize(3 * num_texels());
       for (std::size_t i = 0; i < maps_.color.size(); ++i) maps_.color[i] = kBareColor[i % 3];
     }
+    if (has_albedo()) maps_.albedo.resize(3 * num_texels());
   }
 
   BakedMaps result(const Progress& progress) {
@@ -176,6 +178,10 @@ class MapBaker {
   }
 
  private:
+  bool has_albedo() const { return sources_.colors != nullptr && sources_.colors->has_albedo(); }
+  static std::uint16_t sixteen_bits(float share) {
+    return static_cast<std::uint16_t>(65535.0f * std::clamp(share, 0.0f, 1.0f) + 0.5f);
+  }
   std::size_t num_texels() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
@@ -225,7 +231,11 @@ class MapBaker {
     work.vertices.clear();
     for (const SurfacePoint& p : work.points) work.vertices.push_back({p.place(), p.normal});
     work.colors.resize(work.vertices.size());
-    sources_.colors->paint({}, work.vertices, work.colors);
+    if (!has_albedo()) return sources_.colors->paint({}, work.vertices, work.colors);
+    work.albedo.resize(work.vertices.size());
+    sources_.colors->find_albedo({}, work.vertices, work.albedo);
+    for (std::size_t i = 0; i < work.albedo.size(); ++i)
+      work.colors[i] = sources_.colors->for_viewing(work.albedo[i]);
   }
 
   // Stores column x and row y of a tile. Returns 1 where no surface was met.
@@ -245,6 +255,12 @@ class MapBaker {
     const VertexLabel& label = work.labels[static_cast<std::size_t>(work.label_of[number])];
     maps_.label[i] = static_cast<std::uint8_t>(std::min(label.label, 255));
     if (sources_.colors != nullptr) std::copy_n(work.colors[number].begin(), 3, &maps_.color[3 * i]);
+    if (has_albedo()) {
+      const Vec3f& albedo = work.albedo[number];
+      maps_.albedo[3 * i] = sixteen_bits(albedo.x);
+      maps_.albedo[3 * i + 1] = sixteen_bits(albedo.y);
+      maps_.albedo[3 * i + 2] = sixteen_bits(albedo.z);
+    }
     return point.is_found ? 0 : 1;
   }
 
@@ -293,6 +309,7 @@ class MapBaker {
     fill_borders<std::uint8_t>(copies, 1, maps_.curvature);
     fill_borders<std::uint8_t>(copies, 1, maps_.label);
     if (sources_.colors != nullptr) fill_borders<std::uint8_t>(copies, 3, maps_.color);
+    if (has_albedo()) fill_borders<std::uint16_t>(copies, 3, maps_.albedo);
   }
 
   const BakeSources& sources_;

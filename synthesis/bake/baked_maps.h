@@ -41,7 +41,7 @@ struct BakeOccluder {
 struct BakeSources {
   const ImplicitField& field;
   const SurfaceLabels& labels;
-  const SurfaceColors* colors;  // null: no layer paints
+  const SurfaceColors* colors;  // null: the recipe has no colours
   BakeOccluder occluder;
 };
 
@@ -63,9 +63,11 @@ struct BakedMaps {
   std::vector<std::uint8_t> curvature;
   double curvature_radius = 0.0;
   std::vector<std::uint8_t> label;  // SurfaceLabels, of 2 x 2 texels; 255 for all labels above
-  std::vector<std::uint8_t> color;  // (x 3) sRGB; empty where no layer paints
-  std::int64_t covered = 0;         // texels that show a place
-  std::int64_t missed = 0;          // of them: those along whose normal no surface was met
+  std::vector<std::uint8_t> color;  // (x 3) sRGB, for viewing; empty where the recipe has no colours
+  // (x 3) Normal albedo in red, green and blue over 65535; empty where the recipe states none.
+  std::vector<std::uint16_t> albedo;
+  std::int64_t covered = 0;  // texels that show a place
+  std::int64_t missed = 0;   // of them: those along whose normal no surface was met
 };
 
 // Evaluates the field for every texel whose centre lies in a triangle, and pads the charts by kChartPadding

@@ -18,6 +18,10 @@ std::uint8_t color_byte(float value) {
   return static_cast<std::uint8_t>(255.0f * math::clamp(value, 0.0f, 1.0f) + 0.5f);
 }
 
+VertexColor color_bytes(const Vec3f& color) {
+  return {color_byte(color.x), color_byte(color.y), color_byte(color.z)};
+}
+
 template <class Function>
 Vec3f each_channel(const Function& function, const Vec3f& v) {
   const auto of = [&](float x) { return static_cast<float>(function(double{x})); };
@@ -174,10 +178,14 @@ void SurfaceColors::paint(const Vec3d& origin, std::span<const MeshVertex> verti
                           std::span<VertexColor> colors) const {
   const auto vertex = [&](std::size_t i) { return vertices[i]; };
   for_each_light(origin, vertices.size(), vertex, [&](std::size_t i, const PaintedPoint& point) {
-    const Vec3f color =
-        albedo_ ? each_channel(srgb_of_linear, light_at(point, vertices[i].normal)) : point.color;
-    colors[i] = {color_byte(color.x), color_byte(color.y), color_byte(color.z)};
+    colors[i] = color_bytes(albedo_ ? each_channel(srgb_of_linear, light_at(point, vertices[i].normal))
+                                    : point.color);
   });
+}
+
+VertexColor SurfaceColors::for_viewing(const Vec3f& albedo) const {
+  const auto scale = static_cast<float>(viewing_light(albedo_->normal) / albedo_->normal);
+  return color_bytes(each_channel(srgb_of_linear, scale * albedo));
 }
 
 std::vector<VertexColor> SurfaceColors::colors_of(const Vec3d& origin, const TriangleMesh& mesh) const {

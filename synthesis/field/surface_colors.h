@@ -48,6 +48,8 @@ class SurfaceColors {
   bool has_albedo() const { return albedo_.has_value(); }
   // Writes the normal albedo in red, green and blue at the points; see paint().
   void find_albedo(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<Vec3f> albedo) const;
+  // The colour that paint() gives a point of this albedo.
+  VertexColor for_viewing(const Vec3f& albedo) const;
 
  private:
   // Calls use(i, light) with the linear light for viewing of the points origin + vertex(i).

@@ -250,17 +250,25 @@ void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::f
   write_png({image.width, image.height, 8, type, kFast}, std::as_bytes(std::span(bytes)), file);
 }
 
-std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels) {
+namespace {
+
+template <class Value>
+std::string png_bytes(std::span<const Value> values, int width, int height, int channels) {
   constexpr int kFast = 3;
   check_size(values.size(), static_cast<std::size_t>(channels), width, height, "PNG");
   const spng_color_type type = channels == 1 ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_TRUECOLOR;
-  return encoded_png({width, height, 8, type, kFast}, std::as_bytes(values), "PNG");
+  return encoded_png({width, height, 8 * static_cast<int>(sizeof(Value)), type, kFast}, std::as_bytes(values),
+                     "PNG");
 }
 
-std::string png_of(std::span<const std::uint16_t> grey, int width, int height) {
-  constexpr int kFast = 3;
-  check_size(grey.size(), 1, width, height, "PNG");
-  return encoded_png({width, height, 16, SPNG_COLOR_TYPE_GRAYSCALE, kFast}, std::as_bytes(grey), "PNG");
+}  // namespace
+
+std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels) {
+  return png_bytes(values, width, height, channels);
+}
+
+std::string png_of(std::span<const std::uint16_t> values, int width, int height, int channels) {
+  return png_bytes(values, width, height, channels);
 }
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file) {

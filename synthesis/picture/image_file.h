@@ -49,10 +49,10 @@ std::vector<std::uint8_t> rgba_bytes(const RgbaImage16& image);
 // Writes a PNG of 8 or 16 bits, with or without alpha.
 void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::filesystem::path& file);
 
-// The bytes of a PNG of 8 bits (1 channel: grey, 3: RGB) or of 16 bits (grey), for a file that holds images.
+// The bytes of a PNG of 8 or of 16 bits (1 channel: grey, 3: RGB), for a file that holds images.
 // values: (height x width x channels)
 std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels);
-std::string png_of(std::span<const std::uint16_t> grey, int width, int height);
+std::string png_of(std::span<const std::uint16_t> values, int width, int height, int channels = 1);
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file);
 

@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 
 // The image for which charts are padded where no maps are baked.
 constexpr int kUsualMap = 2048;
-constexpr std::array<const char*, 6> kMapWords{"normal",    "height", "occlusion",
-                                               "curvature", "label",  "color"};
+constexpr std::array<const char*, 7> kMapWords{"normal", "height", "occlusion", "curvature",
+                                               "label",  "color",  "albedo"};
 
 int side_of_level(const MeshSinks& sinks, std::size_t level) {
   const int side = sinks.bake > 0 ? sinks.bake : kUsualMap;
@@ -84,6 +84,8 @@ std::vector<EncodedMap> encoded_maps(const BakedMaps& maps) {
                               {"curvature", bytes(maps.curvature, 1)},
                               {"label", bytes(maps.label, 1)}};
   if (!maps.color.empty()) all.push_back({"color", bytes(maps.color, 3)});
+  if (!maps.albedo.empty())
+    all.push_back({"albedo", [&maps] { return png_of(maps.albedo, maps.side, maps.side, 3); }});
   parallel_for(0, static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
     EncodedMap& map = all[static_cast<std::size_t>(i)];
     map.png = map.encode();

@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+
 #include "numerics/errors.h"
+#include "synthesis/finish/known_albedo.h"
 #include "synthesis/finish/known_population.h"
 
 namespace astrolith {
 namespace {
+
+constexpr const char* kDrawnAlbedo = "drawn";
 
 // Which sizes of a layer are measured, in words.
 std::string measured_words(const FinishLayer& layer, const std::string& unit) {
@@ -43,6 +49,30 @@ void require_room(const FinishLayer& layer, double patch_side) {
                   patch_side, number, layer.known.craters ? "craters" : "boulders", layer.least));
 }
 
+Recipe with_landforms(Job& job, const FinishOptions& options, const Recipe& recipe, const std::string& file,
+                      double patch_side) {
+  Finish finish = finish_recipe(
+      recipe, file,
+      {options.body, options.from > 0.0 ? std::optional(options.from) : std::nullopt, options.to});
+  for (const FinishLayer& layer : finish.layers) require_room(layer, patch_side);
+  auto layers = nlohmann::ordered_json::array();
+  for (const FinishLayer& layer : finish.layers) {
+    layers.push_back(json_of(layer));
+    job.say(fmt::format("finish {}: {}", options.body, words_of(layer, recipe.length_unit)));
+  }
+  if (!finish.without_craters.empty()) {
+    job.say(fmt::format("finish {}: no craters, since {}", options.body, finish.without_craters));
+  }
+  job.summary["finish"] = {
+      {"body", options.body}, {"from", finish.from}, {"to", finish.to}, {"layers", std::move(layers)}};
+  return std::move(finish.recipe);
+}
+
+KnownAlbedo chosen_albedo(const std::string& name, std::uint64_t seed) {
+  if (name == kDrawnAlbedo) return drawn_albedo(seed);
+  return *std::ranges::find(known_albedos(), name, &KnownAlbedo::name);
+}
+
 }  // namespace
 
 void declare_finish_options(Job& job, FinishOptions& options) {
@@ -70,6 +100,15 @@ void declare_finish_options(Job& job, FinishOptions& options) {
       .needs(finish)
       .default_text("")
       .placeholder("SIZE");
+  job.options
+      .add_option(
+          "--albedo", options.albedo,
+          "how bright the ground, its craters and its boulders are, as on a known body: bennu, ryugu, "
+          "itokawa, eros, 67p, vesta, or drawn, which is that of a near-Earth asteroid by the recipe's "
+          "seed; replaces the recipe's own")
+      .check(one_of({"bennu", "ryugu", "itokawa", "eros", "67p", "vesta", kDrawnAlbedo}))
+      .default_text("")
+      .placeholder("BODY");
 }
 
 void check_finish(const FinishOptions& options) {
@@ -80,22 +119,13 @@ void check_finish(const FinishOptions& options) {
 
 Recipe finished(Job& job, const FinishOptions& options, const Recipe& recipe, const std::string& file,
                 double patch_side) {
-  if (!options.wanted()) return recipe;
-  Finish finish = finish_recipe(
-      recipe, file,
-      {options.body, options.from > 0.0 ? std::optional(options.from) : std::nullopt, options.to});
-  for (const FinishLayer& layer : finish.layers) require_room(layer, patch_side);
-  auto layers = nlohmann::ordered_json::array();
-  for (const FinishLayer& layer : finish.layers) {
-    layers.push_back(json_of(layer));
-    job.say(fmt::format("finish {}: {}", options.body, words_of(layer, recipe.length_unit)));
-  }
-  if (!finish.without_craters.empty()) {
-    job.say(fmt::format("finish {}: no craters, since {}", options.body, finish.without_craters));
-  }
-  job.summary["finish"] = {
-      {"body", options.body}, {"from", finish.from}, {"to", finish.to}, {"layers", std::move(layers)}};
-  return std::move(finish.recipe);
+  Recipe made = options.wanted() ? with_landforms(job, options, recipe, file, patch_side) : recipe;
+  if (options.albedo.empty()) return made;
+  const KnownAlbedo known = chosen_albedo(options.albedo, made.seed);
+  set_albedo(made, known);
+  job.summary["albedo"] = {
+      {"name", options.albedo}, {"normal", known.ground.normal}, {"source", std::string(known.source)}};
+  return made;
 }
 
 }  // namespace astrolith

@@ -132,13 +132,15 @@ void declare_mesh_options(Job& job, MeshJob& mesh) {
           .implied("longitude")
           .default_text("");
   job.options
-      .add_option("--bake", sinks.bake,
-                  "with --uv charts: maps of N x N texels that show the whole recipe on this mesh, however "
-                  "coarse it is. Each texel is carried along the mesh's normal to the surface. Files beside "
-                  "the mesh: rock_normal.png (tangent space, MikkTSpace, y up), _height (16 bits), "
-                  "_occlusion, _curvature, _label, and _color where a layer paints; a .glb holds normals, "
-                  "occlusion and colours in its material. Maps of each level of --lod have half of the side, "
-                  "64 at least")
+      .add_option(
+          "--bake", sinks.bake,
+          "with --uv charts: maps of N x N texels that show the whole recipe on this mesh, however "
+          "coarse it is. Each texel is carried along the mesh's normal to the surface. Files beside "
+          "the mesh: rock_normal.png (tangent space, MikkTSpace, y up), _height (16 bits), "
+          "_occlusion, _curvature, _label, _color where the recipe has colours, and _albedo (16 bits, "
+          "linear, 65535 = 1) where it states one; a .glb holds normals, "
+          "occlusion and colours in its material. Maps of each level of --lod have half of the side, "
+          "64 at least")
       .check(in_range(kLeastMap, kMostMap))
       .placeholder("N")
       .default_text("")
