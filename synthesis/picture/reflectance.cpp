@@ -153,11 +153,15 @@ Reflectance parse_reflectance(const std::string& name, const std::string& words)
           fmt::format("{}: \"{:.40}\" is no number of {}; write {}", name, word, law, kReflectanceWords));
     }
     double value = 0.0;
+    text.clear();
     in >> text;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     const auto& [member, low, high] = number->second;
-    if (error != std::errc() || stop != end || !(value >= low && value <= high)) {
+    if (text.empty() || error != std::errc() || stop != end)
+      throw InputError(fmt::format("{}: {} of {} needs a number, as in \"{} {} {:g}\"", name, word, law, law,
+                                   word, 0.5 * (low + high)));
+    if (!(value >= low && value <= high)) {
       throw InputError(fmt::format("{}: {} of {} must be {:g} to {:g}", name, word, law, low, high));
     }
     made.*member = value;

@@ -122,7 +122,10 @@ void run_craters(Job& job, const DescribeArguments& arguments, const TriangleMes
   job.summary["craters"] = found_json(found);
   if (options.boulders) job.summary["boulders"] = found_json(found, BlobSign::bump);
   job.say(arguments.craters.string() + ": " + job.summary["craters"]["listed"].dump() + " craters, " +
-          job.summary["craters"]["likely"].dump() + " of them likely");
+          job.summary["craters"]["likely"].dump() + " of them likely" +
+          (options.boulders ? "; " + job.summary["boulders"]["listed"].dump() + " boulders, " +
+                                  job.summary["boulders"]["likely"].dump() + " of them likely"
+                            : ""));
   if (arguments.picture.empty()) return;
   constexpr std::size_t kMostRings = 200;
   PreviewOptions look;

@@ -245,6 +245,10 @@ void fit_population(Job& job, PopulationOptions& options) {
                          body.diameter, options.unit));
     add_body(std::move(body), recipe.population->bodies);
   }
+  if (options.table.empty())
+    job.note(
+        "note: all models are taken as measured by a camera; --table says which are of radar or light "
+        "curves");
   validate_recipe(recipe, options.output.string());
   auto bodies = nlohmann::ordered_json::array();
   for (const MeasuredBody& body : recipe.population->bodies) bodies.push_back(json_of(body));

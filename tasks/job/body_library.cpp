@@ -71,7 +71,9 @@ fs::path find_body(const fs::path& name) {
   const fs::path population = library_folder() / "populations" / (word + std::string(kCompactExtension));
   if (fs::is_regular_file(population, none)) return population;
   if (exists || bodies.empty()) return name;  // whoever opens it says that it is a folder, or missing
-  const std::string nearest = nearest_name(word, bodies);
+  std::vector<std::string> words = bodies;
+  words.emplace_back("asteroids");
+  const std::string nearest = nearest_name(word, words);
   throw MissingFileError(name.string() + ": is no file and no body of the library; " +
                          (nearest.empty() ? fmt::format("it has {}", fmt::join(bodies, ", "))
                                           : "did you mean " + nearest + "?"));

@@ -19,6 +19,8 @@ std::vector<std::string> library_bodies();
 std::filesystem::path find_body(const std::filesystem::path& name);
 
 // What the help of an option says of find_body().
-inline const std::string kOrLibraryBody = ", or the name of a body of the library, such as eros";
+inline const std::string kOrLibraryBody =
+    ", or the name of a body of the library, such as eros; asteroids "
+    "is its population, of which bodies that nobody has seen are drawn";
 
 }  // namespace astrolith

@@ -153,9 +153,10 @@ void apply_conditions(const Job& job, const DrawOptions& options, const std::fil
   if (!recipe.population) {
     for (const char* option : kOptions) {
       if (job.options.option(option).count() == 0) continue;
-      throw InputError(
-          fmt::format("{}: {}: has no population, whose draws {} is about; fit_population writes one", option,
-                      file.string(), option));
+      throw InputError(fmt::format(
+          "{}: {}: is one body, and {} is about draws; name a population, such as asteroids (with "
+          "--near {} for bodies like it)",
+          option, file.string(), option, file.stem().string()));
     }
     return;
   }

@@ -302,7 +302,6 @@ std::vector<TriangleMesh> some_meshes(const fs::path& pattern, const MemberRange
   for (const std::uint64_t number : sampled_members(range, kFewest)) {
     const fs::path file = numbered(pattern, number);
     if (!fs::is_regular_file(file)) continue;
-    if (!has_readable_extension(file)) throw InputError("no reader for " + mesh_extension(file));
     if (fs::file_size(file) > kLargestCompared) throw InputError("files of more than 32 MB");
     meshes.push_back(read_mesh(file));
   }
@@ -314,6 +313,7 @@ void say_differences(Job& job, const MeshJob& mesh, const MemberRange& range) {
   const auto& [spec, sinks, device, max_memory_gb, only_predict] = mesh;
   if (sinks.file.empty() || spec.points || !spec.tile.empty() || !spec.patch.empty()) return;
   try {
+    if (!has_readable_extension(sinks.file)) return;
     const Json figures = member_differences(some_meshes(sinks.file, range), job.progress("differences"));
     if (figures.is_null()) return;
     job.summary["members"]["differences"] = figures;
@@ -340,8 +340,9 @@ void declare_members_options(Job& job, MembersRequest& request) {
           .add_option(
               "--members", request.range,
               "make bodies A to B - 1 of the recipe instead, each with files of its own: {member} in "
-              "their names stands for its number. They are members of the recipe's family, or else have "
-              "their numbers as seeds; with --vary they are the variations of these numbers, of the family's "
+              "their names stands for its number. They are members of the recipe's family, or draws of its "
+              "population by --seed and their numbers, or else have their numbers as seeds; with --vary they "
+              "are the variations of these numbers, of the family's "
               "members where there is one. Says how much they differ. Member 4711 is the same body on every "
               "machine")
           .placeholder("A:B")
@@ -386,7 +387,8 @@ void check_members(const MembersRequest& request, MeshJob mesh) {
         "or add -o");
 }
 
-void check_sheet(const MembersRequest& request) {
+void check_sheet(const MembersRequest& request, const fs::path& sheet) {
+  if (has_mark(sheet)) throw InputError("--sheet: is one for all members; leave {member} out of its name");
   if (request.range.empty()) return;
   const MemberRange range = parse_range(request.range);
   if (range.end - range.begin > kMostOnSheet)

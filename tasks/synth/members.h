@@ -31,8 +31,8 @@ void declare_members_options(Job& job, MembersRequest& request);
 // without a range for a name that has the mark of members.
 void check_members(const MembersRequest& request, MeshJob mesh);
 
-// Throws InputError for more members than a sheet shows.
-void check_sheet(const MembersRequest& request);
+// Throws InputError for more members than a sheet shows, and for a name with the mark of members.
+void check_sheet(const MembersRequest& request, const std::filesystem::path& sheet);
 
 // Makes the members of the range that the manifest does not have yet, each by the mesh job with the member's
 // number, in seven digits or more, for "{member}" in the names of its files. A member that fails is reported,

@@ -255,7 +255,7 @@ void check_outputs(const Job& job, const SynthOptions& options) {
   if (!options.sheet.empty()) {
     require_extension(options.sheet, {".png"});
     if (single) require_writable(options.sheet);
-    check_sheet(options.members);
+    check_sheet(options.members, options.sheet);
   }
   check_finish(options.finish);
   if (!options.mesh.spec.gravity.empty()) question_density(job, options.mesh.spec.gravity[0]);

@@ -87,7 +87,7 @@ def runs(folder):
     large = folder / "large.json"  # with grains so fine, and boulders so many, that the whole body lacks them
     grains = '[{"type": "gabor", "pixel_size": 1e-6, "height_rms": 1e-6, "lobes": [[1, 0.2, 0.1, 1]]}]'
     large.write_text(BODY % (grains, ""))
-    yield ["synth", large, *mesh, "--finish", "ryugu", "--from", "0.1", "--to", "1e-4"]
+    yield ["synth", large, *mesh, "--finish", "ryugu", "--from", "0.1", "--to", "1e-4", "--albedo", "ryugu"]
     family = folder / "family.json"
     family.write_text(BODY % (LAYERS, ', "family": {"fields": [{"field": "body.a", "low": 1, "high": 1.2}]}'))
     members = ["--members", "0:2", "--resolution", "16"]

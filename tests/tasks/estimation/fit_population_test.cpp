@@ -105,7 +105,7 @@ TEST_F(FitPopulation, GivesBodiesThatSynthDraws) {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_TRUE(has(outcome.errors, words)) << outcome.errors;
   };
-  refused("ball.json -o x.ply --diameter 3", "has no population");
+  refused("ball.json -o x.ply --diameter 3", "is one body");
   refused("p.astro -o x.ply --diameter 0", "--diameter: must be a diameter");
   refused("p.astro -o x.ply --axes 10:1:1", "ratio of 10");
   refused("p.astro -o x.ply --axes 2:1", "must be three numbers");
