@@ -54,7 +54,8 @@ def main():
         shots = [shot(astrolith.Recipe.read(name), (1.0, 0.6, 0.5), 2e5, (250, 200)) for name in astrolith.library()]
         rows = [shots[first:first + given.library] for first in range(0, len(shots), given.library)]
     elif given.draws:
-        shots = [shot(astrolith.draw("asteroids", seed=seed), (1.0, 0.6, 0.5), 1e5, (180, 150)) for seed in range(48)]
+        drawn = (astrolith.mesh("asteroids", seed=seed, albedo="drawn", triangles=1e5) for seed in range(48))
+        shots = [shot(mesh, (1.0, 0.6, 0.5), size=(180, 150)) for mesh in drawn]
         rows = [shots[first:first + given.draws] for first in range(0, len(shots), given.draws)]
     elif given.zoom:
         rows = zoom(recipes[0], given.zoom, given.finish)

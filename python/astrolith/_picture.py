@@ -52,7 +52,7 @@ def render(
     width, height
         Pixels of the whole picture, 16 to 16384.
     colors
-        (n, 3) linear-light albedo of each vertex in [0, 1]; None: neutral grey.
+        (n, 3) linear-light albedo of each vertex in [0, 1]; None: the mesh's own colors, or else neutral grey.
 
     Returns
     -------
@@ -64,6 +64,10 @@ def render(
     ValueError
         The mesh or an argument is wrong.
     """
+    own = getattr(mesh, "colors", None)
+    if colors is None and own is not None:
+        encoded = np.asarray(own) / 255.0
+        colors = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
     # Colours belong to the vertices as they are.
     arrays = surface_of(mesh, "mesh") if colors is None else arrays_of(mesh, "mesh")
     directions = [_arrays.vector(view, "views") for view in _arrays.items(views, "views")]

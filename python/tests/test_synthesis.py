@@ -178,6 +178,14 @@ def test_a_picture_shows_a_bright_ball_on_black(ball):
     assert picture[24, 32].mean() > 60 and picture[0, 0].max() < 60
 
 
+def test_a_mesh_shows_its_own_colors(ball):
+    dark, bright = (
+        astrolith.render(astrolith.mesh(ball, resolution=24, albedo=word), views=[(1, 0, 0)], width=64, height=48)
+        for word in ("bennu", "vesta")
+    )
+    assert dark[24, 32].mean() < 0.8 * bright[24, 32].mean()
+
+
 def test_cameras_suns_and_transparency_are_those_of_synth(ball):
     body = astrolith.mesh(ball, resolution=24)
     look = dict(cameras="from 1 0 0", width=64, height=48, reflectance="lambert", ambient=0)

@@ -101,6 +101,10 @@ KnownAlbedo drawn_albedo(std::uint64_t seed) {
   KnownAlbedo known = kKnown[dark ? 0 : 2];
   const double rayleigh = std::sqrt(-2.0 * portable::log(1.0 - random.uniform()));
   const double normal = std::clamp((dark ? kDark : kBright) * rayleigh, kLeast, kMost);
+  // From the blue of B types to the red of D types, and from grey to the red of Itokawa.
+  const double slope = dark ? random.uniform(-0.4, 1.6) : random.uniform(0.3, 1.1);
+  const Vec3d red = dark ? Vec3d{0.06, 0.0, -0.07} : known.ground.color - Vec3d{1.0, 1.0, 1.0};
+  known.ground.color = known.boulders.color = Vec3d{1.0, 1.0, 1.0} + slope * red;
   known.boulders.normal *= normal / known.ground.normal;
   known.ground.normal = normal;
   known.source = "drawn for a near-Earth asteroid (Wright et al. 2016)";

@@ -22,8 +22,8 @@ struct KnownAlbedo {
 std::span<const KnownAlbedo> known_albedos();
 
 // A ground of an albedo drawn for a near-Earth asteroid: of two Rayleigh distributions, 25 % about .030 and
-// the others about .168 (Wright et al. 2016), dark ones of the kind of Bennu's ground, bright ones of
-// Itokawa's.
+// the others about .168 (Wright et al. 2016). Dark ones are of the kind of Bennu's ground, bright ones of
+// Itokawa's, each with a spectral slope of its own.
 KnownAlbedo drawn_albedo(std::uint64_t seed);
 
 // Gives the recipe this albedo in place of its own: the ground, its mottles as a layer of noise after all
