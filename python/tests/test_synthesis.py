@@ -260,7 +260,7 @@ def test_a_body_is_drawn_from_the_population_of_the_library(ball):
     assert astrolith.draw("asteroids", seed=7, diameter="330", class_="top", details="none") == drawn
     volume = astrolith.mesh(drawn, resolution=48).volume
     assert (6 * volume / np.pi) ** (1 / 3) == pytest.approx(330, rel=0.01)
-    with pytest.raises(ValueError, match="has no population"):
+    with pytest.raises(ValueError, match="is one body"):
         astrolith.draw(ball, diameter="330")
 
 
