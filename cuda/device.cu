@@ -21,7 +21,7 @@ ASTROLITH_HD Probe probe_value(std::uint32_t i) {
       math::exp(x) + math::log(math::abs(x)) * math::sin_turns(x) / math::sqrt(math::fma(x, x, 1.0f));
   const double y = static_cast<double>(x);
   const double bound = portable::exp(y) + portable::log(std::fabs(y)) / std::sqrt(std::fma(y, y, 1.0));
-  return {math::bits_of(point), portable::bits_of(bound)};
+  return {math::to_bits(point), portable::to_bits(bound)};
 }
 
 __global__ void probe_kernel(Probe* out) {

@@ -114,7 +114,7 @@ ASTROLITH_KERNEL void add_if(bool condition, float amount, float& sum) {
 
 // `stride` with the sign of `value`.
 ASTROLITH_KERNEL float signed_as(float value, float stride) {
-  return math::float_of((math::bits_of(value) & INT32_MIN) | math::bits_of(stride));
+  return math::from_bits((math::to_bits(value) & INT32_MIN) | math::to_bits(stride));
 }
 
 // Adds stride times the bin of value / scale among the bins of [-1, 1], counted from the middle one, from the

@@ -11,7 +11,7 @@ constexpr bool has_known_length(std::string_view unit) {
 }
 
 // The metres of "m", "km", "cm" or "mm"; 1 for a unit whose length is unknown.
-constexpr double metres_of(std::string_view unit) {
+constexpr double metres_per_unit(std::string_view unit) {
   return unit == "km" ? 1000.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 1.0;
 }
 

@@ -18,7 +18,7 @@ class PlainVariant {
   // Holds a default value of the first type.
   PlainVariant() : PlainVariant(std::tuple_element_t<0, std::tuple<Types...>>{}) {}
   template <class T>
-  explicit PlainVariant(const T& value) : number_(number_of<T>()) {
+  explicit PlainVariant(const T& value) : number_(type_index<T>()) {
     std::memcpy(bytes_, &value, sizeof(T));
   }
 
@@ -31,14 +31,14 @@ class PlainVariant {
   // Null where another type is held.
   template <class T>
   ASTROLITH_HD const T* get_if() const {
-    return number_ == number_of<T>() ? reinterpret_cast<const T*>(bytes_) : nullptr;
+    return number_ == type_index<T>() ? reinterpret_cast<const T*>(bytes_) : nullptr;
   }
 
  private:
   static_assert((std::is_trivially_copyable_v<Types> && ...));
 
   template <class T>
-  static constexpr std::uint32_t number_of() {
+  static constexpr std::uint32_t type_index() {
     std::uint32_t number = 0;
     const bool found = ((std::is_same_v<T, Types> || (++number, false)) || ...);
     static_cast<void>(found);

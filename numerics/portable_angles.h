@@ -77,7 +77,7 @@ ASTROLITH_KERNEL double atan_series(double p, double u, double z) {
 }
 
 // atan(t) for t in [0, 1], within 3e-16.
-ASTROLITH_HD inline double atan_of_unit(double t) {
+ASTROLITH_HD inline double atan_unit_interval(double t) {
   // atan(t) = atan(c) + atan((t - c) / (1 + t c)), where c is the tangent of a multiple of pi/8. What is left
   // is at most tan(pi/16) = 0.199.
   constexpr double kTangent = 0.41421356237309504880;  // of pi/8
@@ -92,7 +92,8 @@ ASTROLITH_HD inline double atan_of_unit(double t) {
 ASTROLITH_HD inline double atan2(double y, double x) {
   const double a = std::fabs(x), b = std::fabs(y);
   if (a == 0.0 && b == 0.0) return 0.0;
-  const double octant = b > a ? std::numbers::pi / 2.0 - atan_of_unit(a / b) : atan_of_unit(b / a);
+  const double octant =
+      b > a ? std::numbers::pi / 2.0 - atan_unit_interval(a / b) : atan_unit_interval(b / a);
   const double half = x < 0.0 ? std::numbers::pi - octant : octant;
   return y < 0.0 ? -half : half;
 }

@@ -13,14 +13,14 @@
 
 namespace astrolith::portable {
 
-ASTROLITH_HD inline std::int64_t bits_of(double x) {
+ASTROLITH_HD inline std::int64_t to_bits(double x) {
 #ifdef __CUDA_ARCH__
   return __double_as_longlong(x);
 #else
   return std::bit_cast<std::int64_t>(x);
 #endif
 }
-ASTROLITH_HD inline double double_of(std::int64_t bits) {
+ASTROLITH_HD inline double from_bits(std::int64_t bits) {
 #ifdef __CUDA_ARCH__
   return __longlong_as_double(bits);
 #else
@@ -73,7 +73,7 @@ ASTROLITH_HD inline double exp(double x) {
   // does).
   const auto whole = static_cast<std::int64_t>(n);
   const std::int64_t half = whole / 2;
-  const double scaled = p * double_of((half + 1023) << 52) * double_of((whole - half + 1023) << 52);
+  const double scaled = p * from_bits((half + 1023) << 52) * from_bits((whole - half + 1023) << 52);
   return x < -708.0 ? 0.0 : scaled;
 }
 
@@ -84,9 +84,9 @@ struct BinaryParts {
 
 ASTROLITH_HD inline BinaryParts binary_parts(double x) {
   const double normal = x > 2.2250738585072014e-308 ? x : 2.2250738585072014e-308;
-  const std::int64_t i = bits_of(normal);
+  const std::int64_t i = to_bits(normal);
   const std::int64_t e = (i - 0x3fe6a09e667f3bcd) >> 52;
-  const double m = double_of(i - e * (std::int64_t{1} << 52));
+  const double m = from_bits(i - e * (std::int64_t{1} << 52));
   // log(m) = 2 atanh(s), |s| <= 0.172; the series leaves a remainder below 1e-18.
   const double s = (m - 1.0) / (m + 1.0), z = s * s;
   return {static_cast<double>(e), atanh_series(1.0 / 23.0 * z + 1.0 / 21.0, s, z)};

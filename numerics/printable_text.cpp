@@ -38,7 +38,7 @@ struct Character {
 // The character at the start of a text that is not empty. Overlong forms, surrogates and codes beyond Unicode
 // are not UTF-8.
 Character first_character(std::string_view text) {
-  constexpr std::uint32_t kLeastOfLength[] = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::uint32_t kLeastByLength[] = {0, 0, 0x80, 0x800, 0x10000};
   const unsigned lead = byte_at(text, 0);
   if (lead < 0x80) return {lead, 1};
   const std::size_t bytes = lead >= 0xf8 ? 0 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc0 ? 2 : 0;
@@ -49,7 +49,7 @@ Character first_character(std::string_view text) {
     code = code << 6 | (byte_at(text, i) & 0x3f);
   }
   const bool is_surrogate = code >= 0xd800 && code <= 0xdfff;
-  if (code < kLeastOfLength[bytes] || code > 0x10ffff || is_surrogate) return {};
+  if (code < kLeastByLength[bytes] || code > 0x10ffff || is_surrogate) return {};
   return {code, bytes};
 }
 
@@ -59,7 +59,7 @@ std::string escape(const char* format, std::uint32_t number) {
   return text;
 }
 
-std::string escape_of_control(unsigned code) {
+std::string escape_control(unsigned code) {
   switch (code) {
     case '\n':
       return "\\n";
@@ -83,7 +83,7 @@ std::string printable(std::string_view text) {
       continue;
     }
     if (c.code < 0x20 || c.code == 0x7f) {
-      line += escape_of_control(c.code);
+      line += escape_control(c.code);
     } else if (is_hidden(c.code)) {
       line += escape(c.code > 0xffff ? "\\U%08x" : "\\u%04x", c.code);
     } else {

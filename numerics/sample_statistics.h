@@ -12,21 +12,21 @@ namespace astrolith {
 
 // The mean, and the mean square of the deviations from it; 0 for no numbers.
 template <typename T>
-double mean_of(const std::vector<T>& values) {
+double sample_mean(const std::vector<T>& values) {
   double sum = 0.0;
   for (const T v : values) sum += v;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 template <typename T>
-double variance_of(const std::vector<T>& values) {
-  const double mean = mean_of(values);
+double sample_variance(const std::vector<T>& values) {
+  const double mean = sample_mean(values);
   double sum = 0.0;
   for (const T v : values) sum += (v - mean) * (v - mean);
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
 // The sum of the products, in the order of the elements; `b` has as many as `a`.
-inline double sum_of_products(std::span<const double> a, std::span<const double> b) {
+inline double dot_product(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
@@ -34,7 +34,7 @@ inline double sum_of_products(std::span<const double> a, std::span<const double>
 
 // The value of sorted numbers below which a share of them lies, 0 to 1.
 template <typename T>
-T quantile_of_sorted(const std::vector<T>& sorted, double share) {
+T sorted_quantile(const std::vector<T>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
 }
 

@@ -14,7 +14,7 @@
 
 namespace astrolith::math {
 
-ASTROLITH_HD inline std::int32_t bits_of(float x) {
+ASTROLITH_HD inline std::int32_t to_bits(float x) {
 #ifdef __CUDA_ARCH__
   return __float_as_int(x);
 #else
@@ -22,7 +22,7 @@ ASTROLITH_HD inline std::int32_t bits_of(float x) {
 #endif
 }
 
-ASTROLITH_HD inline float float_of(std::int32_t bits) {
+ASTROLITH_HD inline float from_bits(std::int32_t bits) {
 #ifdef __CUDA_ARCH__
   return __int_as_float(bits);
 #else
@@ -52,7 +52,7 @@ ASTROLITH_HD inline float sqrt(float x) {
 }
 ASTROLITH_HD inline double sqrt(double x) { return std::sqrt(x); }
 
-ASTROLITH_HD inline float abs(float x) { return float_of(bits_of(x) & 0x7fffffff); }
+ASTROLITH_HD inline float abs(float x) { return from_bits(to_bits(x) & 0x7fffffff); }
 ASTROLITH_HD inline float min(float a, float b) { return a < b ? a : b; }
 ASTROLITH_HD inline float max(float a, float b) { return a > b ? a : b; }
 ASTROLITH_HD inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
@@ -91,7 +91,7 @@ ASTROLITH_KERNEL float exp(float x) {
   const float n = round_even(clamped * 1.44269504088896341f);
   // ln 2 in two parts, so that the reduced argument keeps all its bits (Cody and Waite).
   const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, clamped));
-  const float scale = float_of((static_cast<std::int32_t>(n) + 127) << 23);
+  const float scale = from_bits((static_cast<std::int32_t>(n) + 127) << 23);
   return x < -87.0f ? 0.0f : exp_series(r) * scale;
 }
 ASTROLITH_HD inline double exp(double x) { return portable::exp(x); }
@@ -102,18 +102,18 @@ ASTROLITH_KERNEL float exp_within_range(float x) {
   const float shifted = x * 1.44269504088896341f + kMagic;
   const float n = shifted - kMagic;
   const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, x));
-  const auto power = static_cast<std::uint32_t>(bits_of(shifted)) + 127u;
-  return exp_series(r) * float_of(static_cast<std::int32_t>(power << 23));
+  const auto power = static_cast<std::uint32_t>(to_bits(shifted)) + 127u;
+  return exp_series(r) * from_bits(static_cast<std::int32_t>(power << 23));
 }
 ASTROLITH_HD inline double exp_within_range(double x) { return portable::exp(x); }
 
 // Natural logarithm within 2 ulp for normal positive x; about -87.3 for zero and subnormals.
 ASTROLITH_KERNEL float log(float x) {
   const float normal = max(x, 1.17549435e-38f);
-  const std::int32_t i = bits_of(normal);
+  const std::int32_t i = to_bits(normal);
   // Exponent such that the mantissa lies in [sqrt(1/2), sqrt(2)).
   const std::int32_t e = (i - 0x3f3504f3) >> 23;
-  const float m = float_of(i - (e << 23));
+  const float m = from_bits(i - (e << 23));
   const float f = m - 1.0f;
   // log(m) = 2 atanh(s), s = f / (2 + f), |s| <= 0.172.
   const float s = f / (2.0f + f);

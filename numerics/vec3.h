@@ -80,10 +80,10 @@ T Vec3<T>::*longest_axis(const Vec3d& extent) {
 
 // The least and the greatest of each coordinate, those of `a` where one of the two is not a number. One
 // instruction each, where std::fmin is a call.
-ASTROLITH_HD inline Vec3d least_of(const Vec3d& a, const Vec3d& b) {
+ASTROLITH_HD inline Vec3d component_min(const Vec3d& a, const Vec3d& b) {
   return {b.x < a.x ? b.x : a.x, b.y < a.y ? b.y : a.y, b.z < a.z ? b.z : a.z};
 }
-ASTROLITH_HD inline Vec3d greatest_of(const Vec3d& a, const Vec3d& b) {
+ASTROLITH_HD inline Vec3d component_max(const Vec3d& a, const Vec3d& b) {
   return {b.x > a.x ? b.x : a.x, b.y > a.y ? b.y : a.y, b.z > a.z ? b.z : a.z};
 }
 
@@ -93,8 +93,8 @@ struct Box {
   Vec3d max{-1e300, -1e300, -1e300};
 
   void extend(const Vec3d& p) {
-    min = least_of(min, p);
-    max = greatest_of(max, p);
+    min = component_min(min, p);
+    max = component_max(max, p);
   }
   bool empty() const { return !(min.x <= max.x); }
   ASTROLITH_HD Vec3d extent() const { return max - min; }
@@ -120,13 +120,13 @@ ASTROLITH_HD inline bool boxes_touch(const Box& a, const Box& b) {
 }
 
 // The smallest box that holds two boxes, neither of which is empty.
-ASTROLITH_HD inline Box box_of_both(const Box& a, const Box& b) {
-  return {least_of(a.min, b.min), greatest_of(a.max, b.max)};
+ASTROLITH_HD inline Box united(const Box& a, const Box& b) {
+  return {component_min(a.min, b.min), component_max(a.max, b.max)};
 }
 
 // The part that two boxes share. Expects that they touch.
 inline Box common_part(const Box& a, const Box& b) {
-  return {greatest_of(a.min, b.min), least_of(a.max, b.max)};
+  return {component_max(a.min, b.min), component_min(a.max, b.max)};
 }
 
 }  // namespace astrolith

@@ -8,6 +8,6 @@
 namespace astrolith {
 
 // The coordinates as an array [x, y, z].
-inline nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
+inline nlohmann::ordered_json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace astrolith

@@ -14,7 +14,7 @@ void check_elevations(const AlbedoByElevation& by, const Place& place) {
 }
 
 const LayerAlbedo* noise_albedo(const Layer& layer) {
-  const LayerUse* const use = use_of(layer);
+  const LayerUse* const use = find_use(layer);
   return use != nullptr && use->albedo ? &*use->albedo : nullptr;
 }
 

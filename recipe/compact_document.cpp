@@ -29,7 +29,7 @@ constexpr std::size_t kFewestRows = 4;
 constexpr std::size_t kFewestNumbers = 8;
 
 // CRC-16 with the polynomial 0x1021, which finds damaged files.
-std::uint16_t check_of(std::string_view bytes) {
+std::uint16_t checksum(std::string_view bytes) {
   std::uint32_t check = 0xffff;
   for (const char c : bytes) {
     check ^= static_cast<std::uint32_t>(static_cast<unsigned char>(c)) << 8;
@@ -49,11 +49,11 @@ bool too_many_equal(const json& list) {
          std::all_of(list.begin(), list.end(), [&](const json& value) { return value == list.front(); });
 }
 
-bool is_list_of_numbers(const json& value) {
+bool is_number_list(const json& value) {
   return all_numbers(value) && value.size() >= kFewestNumbers && !too_many_equal(value);
 }
 
-bool is_list_of_rows(const json& value) {
+bool is_row_list(const json& value) {
   if (!value.is_array() || value.size() < kFewestRows || too_many_equal(value)) return false;
   const std::size_t columns = value.front().size();
   return columns <= kMostTableColumns && std::all_of(value.begin(), value.end(), [&](const json& row) {
@@ -61,9 +61,9 @@ bool is_list_of_rows(const json& value) {
          });
 }
 
-NumberTable table_of_numbers(const json& list) { return {1, list.get<std::vector<double>>()}; }
+NumberTable numbers_to_table(const json& list) { return {1, list.get<std::vector<double>>()}; }
 
-NumberTable table_of_rows(const json& list) {
+NumberTable rows_to_table(const json& list) {
   NumberTable table{list.front().size(), {}};
   for (const json& row : list) {
     for (const json& number : row) table.values.push_back(number.get<double>());
@@ -71,7 +71,7 @@ NumberTable table_of_rows(const json& list) {
   return table;
 }
 
-json rows_of(const NumberTable& table) {
+json to_rows(const NumberTable& table) {
   json list = json::array();
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto first = table.values.begin() + static_cast<std::ptrdiff_t>(row * table.columns);
@@ -115,11 +115,11 @@ void return_heights(json& value, RangeDecoder& decoder) {
 // Moves the tables out of the value, in the order of its text. null stands for a list of rows, and [null] for
 // a list of numbers: recipes have no null of their own.
 void take_tables(json& value, std::vector<NumberTable>& tables) {
-  if (is_list_of_rows(value)) {
-    tables.push_back(table_of_rows(value));
+  if (is_row_list(value)) {
+    tables.push_back(rows_to_table(value));
     value = nullptr;
-  } else if (is_list_of_numbers(value)) {
-    tables.push_back(table_of_numbers(value));
+  } else if (is_number_list(value)) {
+    tables.push_back(numbers_to_table(value));
     value = json::array({nullptr});
   } else if (value.is_structured()) {
     for (json& inner : value) take_tables(inner, tables);
@@ -133,7 +133,7 @@ class TableReturner {
   void fill(json& value) {
     if (stands_for_heights(value)) return;
     if (value.is_null()) {
-      value = rows_of(next());
+      value = to_rows(next());
     } else if (value.is_array() && value.size() == 1 && value.front().is_null()) {
       value = next().values;
     } else if (value.is_structured()) {
@@ -200,7 +200,7 @@ std::string compact_document(const json& document) {
   take_heights(rest, heights);
   take_tables(rest, tables);
   const std::string stream = encoded(rest, tables, heights);
-  const std::uint16_t check = check_of(stream);
+  const std::uint16_t check = checksum(stream);
   std::string bytes(kMagic);
   for (const unsigned char byte :
        {kCompactVersion, static_cast<unsigned char>(check >> 8), static_cast<unsigned char>(check & 0xff)}) {
@@ -220,7 +220,7 @@ json parse_compact(std::string_view bytes, const std::string& name) {
   const InputError damaged(name + ": is a damaged compact recipe; copy it or write it again");
   if (bytes.size() < kHeaderBytes) throw damaged;
   const std::string_view stream = bytes.substr(kHeaderBytes);
-  if (check_of(stream) != (byte(4) << 8 | byte(5))) throw damaged;
+  if (checksum(stream) != (byte(4) << 8 | byte(5))) throw damaged;
   try {
     return decoded(stream, name);
   } catch (const DamagedStream&) {

@@ -50,8 +50,8 @@ struct Family {
 };
 
 // The least and the greatest number that the field can get.
-double least_of(const DrawnField& drawn);
-double greatest_of(const DrawnField& drawn);
+double min_value(const DrawnField& drawn);
+double max_value(const DrawnField& drawn);
 
 struct Recipe;
 

@@ -165,15 +165,15 @@ void check_whole_numbers(const Recipe& recipe, const Place& place) {
   }
 }
 
-using EndOf = double (*)(const DrawnField&);
+using DrawnEnd = double (*)(const DrawnField&);
 
 // The recipe must be valid where all drawn numbers are at one end of their ranges.
-void check_end(const Recipe& recipe, EndOf end_of, std::string_view words, const Place& place) {
+void check_end(const Recipe& recipe, DrawnEnd find_end, std::string_view words, const Place& place) {
   std::vector<std::string_view> fields;
   std::vector<double> numbers;
   for (const DrawnField& drawn : recipe.family->fields) {
     fields.push_back(drawn.field);
-    numbers.push_back(end_of(drawn));
+    numbers.push_back(find_end(drawn));
   }
   Recipe changed = recipe;
   changed.family.reset();
@@ -195,11 +195,11 @@ void check_end(const Recipe& recipe, EndOf end_of, std::string_view words, const
 
 }  // namespace
 
-double least_of(const DrawnField& drawn) {
+double min_value(const DrawnField& drawn) {
   return drawn.low ? *drawn.low : *std::min_element(drawn.values.begin(), drawn.values.end());
 }
 
-double greatest_of(const DrawnField& drawn) {
+double max_value(const DrawnField& drawn) {
   return drawn.high ? *drawn.high : *std::max_element(drawn.values.begin(), drawn.values.end());
 }
 
@@ -233,8 +233,8 @@ void visit_fields(FieldVisitor& v, Family& family) {
 void check_family(const Recipe& recipe, const Place& place) {
   if (!recipe.family || recipe.family->fields.empty()) return;
   check_whole_numbers(recipe, place);
-  check_end(recipe, least_of, "least", place);
-  check_end(recipe, greatest_of, "greatest", place);
+  check_end(recipe, min_value, "least", place);
+  check_end(recipe, max_value, "greatest", place);
 }
 
 }  // namespace astrolith

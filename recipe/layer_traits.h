@@ -27,7 +27,7 @@ struct LayerTraits {
 // What else a kind can do follows from the members of its struct:
 //   NamedImage, its base   it names the file of an image
 //   color, has_height()    it may have a colour, and may then lack a height
-//   paints()               where it is true the layer paints bodies, by a paint_of() in its room
+//   paints()               where it is true the layer paints bodies, by a make_exemplar_paint() in its room
 //   varied()               a variation changes these fields; other layers change with the seed alone
 //   stated_height()        the field that states its height, if that is neither amplitude nor height_rms
 

@@ -18,7 +18,7 @@ bool has_name(const Layer& layer, const std::string& name) {
 }
 
 bool displaces(const Layer& layer) {
-  const LayerUse* use = use_of(layer);
+  const LayerUse* use = find_use(layer);
   return use != nullptr && use->combination.kind == Combine::kWarp;
 }
 
@@ -41,7 +41,7 @@ void check_masking_layer(const LayerMask& mask, std::span<const Layer> before, c
   if (mask.layer.empty()) at.fail("must be a name; give the masking layer one");
   const int masking = find_layer(before, mask.layer);
   if (masking < 0) at.fail("no layer before this one has the name " + quote_text(mask.layer) + "; name one");
-  if (use_of(before[static_cast<std::size_t>(masking)]) == nullptr) {
+  if (find_use(before[static_cast<std::size_t>(masking)]) == nullptr) {
     at.fail(quote_text(mask.layer) + " has no height of its own; name a layer of noise");
   }
 }
@@ -49,19 +49,19 @@ void check_masking_layer(const LayerMask& mask, std::span<const Layer> before, c
 void check_layer_use(const Recipe& recipe, std::size_t index, const Place& place) {
   const Layer& layer = recipe.layers[index];
   const std::span<const Layer> before = std::span(recipe.layers).first(index);
-  if (const LayerUse* use = use_of(layer)) {
+  if (const LayerUse* use = find_use(layer)) {
     if (use->locality) check_group(*use->locality, recipe.body, place.field("locality"));
     if (use->mask) {
       check_masking_layer(*use->mask, before, place.field("mask"));
       if (use->mask->over) place.field("mask").field("over").fail("only a population has it; leave it out");
     }
   }
-  if (const Population* drawn = population_of(layer)) {
+  if (const Population* drawn = find_population(layer)) {
     const Place at = place.field("population");
     if (drawn->locality) check_group(*drawn->locality, recipe.body, at.field("locality"));
     if (drawn->mask) check_masking_layer(*drawn->mask, before, at.field("mask"));
   }
-  const LayerTraits traits = traits_of(layer);
+  const LayerTraits traits = layer_traits(layer);
   if (traits.is_noise && traits.on_surface && std::any_of(before.begin(), before.end(), displaces)) {
     const std::string_view word = type_word(layer);
     const bool has_vowel = std::string_view("aeiou").find(word.front()) != std::string_view::npos;
@@ -120,7 +120,7 @@ std::string_view height_field(const Layer& layer) {
         }
       },
       layer);
-  const LayerUse* use = use_of(layer);
+  const LayerUse* use = find_use(layer);
   const bool is_blend = use != nullptr && use->combination.kind == Combine::kBlend;
   return is_blend && use->combination.width > std::fabs(field.height) ? "combine.width" : field.name;
 }

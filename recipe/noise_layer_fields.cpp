@@ -27,7 +27,7 @@ std::string relief_text(const ReliefLayer& layer) {
   HeightPicture picture{image.width, image.height, image.values};
   // Codes, from 1: small numbers take fewer bits than grey values.
   for (std::uint16_t& value : picture.values) {
-    if (value != 0) value = static_cast<std::uint16_t>(layer.code_of(value) + 1);
+    if (value != 0) value = static_cast<std::uint16_t>(layer.grey_to_code(value) + 1);
   }
   RangeEncoder encoder;
   encode(picture, encoder);
@@ -36,15 +36,15 @@ std::string relief_text(const ReliefLayer& layer) {
 
 // The pixels whose text this is, for a layer with these levels; null where the text is damaged.
 std::shared_ptr<const ExemplarImage> relief_pixels(const ReliefLayer& layer, std::string_view text) {
-  constexpr std::size_t kMostPixelsOfByte = 400;  // a body's picture has some ten
+  constexpr std::size_t kMostPixelsPerByte = 400;  // a body's picture has some ten
   const std::optional<std::string> bytes = base64_bytes(text);
   if (!bytes) return nullptr;
   try {
     RangeDecoder decoder(*bytes);
-    HeightPicture picture = decode(kMostPixelsOfByte * bytes->size(), decoder);
+    HeightPicture picture = decode(kMostPixelsPerByte * bytes->size(), decoder);
     for (std::uint16_t& value : picture.values) {
       if (value > layer.levels) return nullptr;
-      if (value != 0) value = layer.value_of(static_cast<std::uint16_t>(value - 1));
+      if (value != 0) value = layer.code_to_grey(static_cast<std::uint16_t>(value - 1));
     }
     return std::make_shared<ExemplarImage>(
         ExemplarImage{picture.width, picture.height, std::move(picture.values), {}});

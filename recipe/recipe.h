@@ -32,12 +32,12 @@ using Layer = std::variant<FractalLayer, SpotLayer, SparseLayer, CraterLayer, Bo
 std::string_view type_word(const Layer& layer);
 
 // What the layer is.
-inline LayerTraits traits_of(const Layer& layer) {
+inline LayerTraits layer_traits(const Layer& layer) {
   return std::visit([]<class Kind>(const Kind&) { return Kind::kTraits; }, layer);
 }
 
 // The layer's use, or null for craters and boulders.
-inline LayerUse* use_of(Layer& layer) {
+inline LayerUse* find_use(Layer& layer) {
   return std::visit(
       []<class Kind>(Kind& l) -> LayerUse* {
         if constexpr (Kind::kTraits.is_noise) {
@@ -48,10 +48,10 @@ inline LayerUse* use_of(Layer& layer) {
       },
       layer);
 }
-inline const LayerUse* use_of(const Layer& layer) { return use_of(const_cast<Layer&>(layer)); }
+inline const LayerUse* find_use(const Layer& layer) { return find_use(const_cast<Layer&>(layer)); }
 
 // The population of a layer of craters or boulders, or null.
-inline Population* population_of(Layer& layer) {
+inline Population* find_population(Layer& layer) {
   return std::visit(
       []<class Kind>(Kind& l) -> Population* {
         if constexpr (Kind::kTraits.is_noise) {
@@ -62,12 +62,12 @@ inline Population* population_of(Layer& layer) {
       },
       layer);
 }
-inline const Population* population_of(const Layer& layer) {
-  return population_of(const_cast<Layer&>(layer));
+inline const Population* find_population(const Layer& layer) {
+  return find_population(const_cast<Layer&>(layer));
 }
 
 // The image that the layer names, or null for kinds without one.
-inline NamedImage* image_of(Layer& layer) {
+inline NamedImage* find_image(Layer& layer) {
   return std::visit(
       []<class Kind>(Kind& l) -> NamedImage* {
         if constexpr (std::is_base_of_v<NamedImage, Kind>) {
@@ -78,7 +78,7 @@ inline NamedImage* image_of(Layer& layer) {
       },
       layer);
 }
-inline const NamedImage* image_of(const Layer& layer) { return image_of(const_cast<Layer&>(layer)); }
+inline const NamedImage* find_image(const Layer& layer) { return find_image(const_cast<Layer&>(layer)); }
 
 // Whether the layer has a colour.
 inline bool has_color(const Layer& layer) {
@@ -133,21 +133,21 @@ inline bool has_height(const Layer& layer) {
 }
 
 // The locality of a layer of noise, or that of the landforms that a layer draws; null without one.
-inline const Locality* locality_of(const Layer& layer) {
-  const LayerUse* use = use_of(layer);
-  const Population* drawn = population_of(layer);
+inline const Locality* find_locality(const Layer& layer) {
+  const LayerUse* use = find_use(layer);
+  const Population* drawn = find_population(layer);
   if (use != nullptr && use->locality) return &*use->locality;
   return drawn != nullptr && drawn->locality ? &*drawn->locality : nullptr;
 }
 
 // The mask of a layer of noise, or that of the landforms that a layer draws; null without one.
-inline LayerMask* mask_of(Layer& layer) {
-  LayerUse* use = use_of(layer);
-  Population* drawn = population_of(layer);
+inline LayerMask* find_mask(Layer& layer) {
+  LayerUse* use = find_use(layer);
+  Population* drawn = find_population(layer);
   if (use != nullptr && use->mask) return &*use->mask;
   return drawn != nullptr && drawn->mask ? &*drawn->mask : nullptr;
 }
-inline const LayerMask* mask_of(const Layer& layer) { return mask_of(const_cast<Layer&>(layer)); }
+inline const LayerMask* find_mask(const Layer& layer) { return find_mask(const_cast<Layer&>(layer)); }
 
 // The name of the field that decides how high a layer is, for messages: "amplitude", "height_rms" or
 // "height_range"; "combine.width" where a blend's joint is wider than the layer is high; or the list of

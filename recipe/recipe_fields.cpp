@@ -35,7 +35,7 @@ Layer fractal_layer(Noise noise) {
 }
 
 template <class... Kinds>
-std::vector<LayerType> types_of(const std::variant<FractalLayer, Kinds...>&) {
+std::vector<LayerType> list_types(const std::variant<FractalLayer, Kinds...>&) {
   return {{"simplex", fractal_layer(Noise::kSimplex)},
           {"perlin", fractal_layer(Noise::kPerlin)},
           {"worley", fractal_layer(Noise::kWorleyF1)},
@@ -43,7 +43,7 @@ std::vector<LayerType> types_of(const std::variant<FractalLayer, Kinds...>&) {
 }
 
 const std::vector<LayerType>& layer_types() {
-  static const std::vector<LayerType> types = types_of(Layer{});
+  static const std::vector<LayerType> types = list_types(Layer{});
   return types;
 }
 
@@ -89,7 +89,7 @@ void check_seed(const Recipe& recipe, const Place& place) {
   place.field("seed").fail(fmt::format("must be below 2^53, is {}", recipe.seed));
 }
 
-void check_parts_of_recipe(const Recipe& recipe, const Place& place) {
+void check_recipe_parts(const Recipe& recipe, const Place& place) {
   if (!recipe.body && !recipe.population && recipe.layers.empty()) {
     place.fail("has neither a body nor layers; add one of them");
   }
@@ -163,7 +163,7 @@ void visit_fields(FieldVisitor& v, Layer& layer) {
     v.field("seed", kind.seed, range(0, kMaxLayerSeed));
   };
   std::visit(visit_kind, layer);
-  if (LayerUse* use = use_of(layer)) visit_fields(v, *use);
+  if (LayerUse* use = find_use(layer)) visit_fields(v, *use);
 }
 
 void visit_fields(FieldVisitor& v, Recipe& recipe) {
@@ -176,7 +176,7 @@ void visit_fields(FieldVisitor& v, Recipe& recipe) {
   v.field("seed", recipe.seed);
   v.rule(check_seed, recipe);
   v.field("provenance", recipe.provenance);
-  v.rule(check_parts_of_recipe, recipe);
+  v.rule(check_recipe_parts, recipe);
   v.field("body", recipe.body);
   v.field("population", recipe.population);
   v.field("layers", recipe.layers);

@@ -146,12 +146,12 @@ class FieldReader final : public FieldVisitor {
 
 }  // namespace
 
-static json document_of(std::string_view text, const std::string& name) {
+static json parse_document(std::string_view text, const std::string& name) {
   return is_compact(text) ? parse_compact(text, name) : parse_json(text, name);
 }
 
 Recipe parse_recipe(std::string_view text, const std::string& name) {
-  const json document = document_of(text, name);
+  const json document = parse_document(text, name);
   const Place place(name);
   Recipe recipe;
   FieldReader(document, place).visit(recipe);
@@ -164,7 +164,7 @@ Recipe read_recipe(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> named_images(const std::filesystem::path& file) {
-  const json document = document_of(read_json_text(file), file.string());
+  const json document = parse_document(read_json_text(file), file.string());
   std::vector<std::string> names;
   const auto layers = document.find("layers");
   if (!document.is_object() || layers == document.end()) return names;

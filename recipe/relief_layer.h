@@ -59,10 +59,10 @@ struct ReliefLayer : NamedImage {
   bool is_embedded() const { return image.empty() && image_sha256.empty(); }
   double step() const { return (high - low) / (levels - 1); }
   // The code 0 .. levels - 1 of a grey value above 0, and the grey value of a code.
-  std::uint16_t code_of(std::uint16_t value) const {
+  std::uint16_t grey_to_code(std::uint16_t value) const {
     return static_cast<std::uint16_t>(((value - 1u) * (levels - 1u) + 32767u) / 65534u);
   }
-  std::uint16_t value_of(std::uint16_t code) const {
+  std::uint16_t code_to_grey(std::uint16_t code) const {
     return static_cast<std::uint16_t>(1u + (code * 65534u + (levels - 1u) / 2u) / (levels - 1u));
   }
   double edge_length() const { return edge > 0.0 ? edge : 1.2 * spacing; }

@@ -31,7 +31,7 @@ class BackendMesher {
   }
 
   MeshStatistics run(const Progress& progress) {
-    const LayerRange range = layers_of_window(grid_);
+    const LayerRange range = window_layers(grid_);
     for (int done = range.first; done < range.end;) {
       done += batch_beside_sink(done, range.end);
       if (!report(progress, double(done - range.first) / (range.end - range.first),

@@ -73,7 +73,7 @@ struct NarrowLists {
     const Box& supports = field.body.supports;
     const Box projected = projected_block(field, box);
     const Box inside = moved_into(projected, to_float(supports.min), to_float(supports.max));
-    return widened(grid.in_patch ? box_of_both(inside, projected) : inside, wide_margin);
+    return widened(grid.in_patch ? united(inside, projected) : inside, wide_margin);
   }
   // The box that the elements of a list must reach.
   ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {

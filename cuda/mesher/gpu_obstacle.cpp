@@ -19,10 +19,10 @@ struct ImpulseCells {
   void operator()(const Noise& noise) const {
     constexpr NoiseLists kLists = Noise::kTraits.lists;
     if constexpr (kLists == NoiseLists::kGabor) {
-      of_gabor += cells_of(noise, field.arrays, projected_block(field, block).longest_side());
+      of_gabor += count_cells(noise, field.arrays, projected_block(field, block).longest_side());
     } else if constexpr (kLists == NoiseLists::kSpots) {
       of_spots +=
-          cells_of(noise, field.arrays, displaced_layer_box(block, layer->join.displaced).longest_side());
+          count_cells(noise, field.arrays, displaced_layer_box(block, layer->join.displaced).longest_side());
     } else {
       static_assert(kLists == NoiseLists::kNone || kLists == NoiseLists::kCraters);
     }

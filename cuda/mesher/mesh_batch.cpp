@@ -52,12 +52,12 @@ RowOfBlocks row_around(std::span<const BlockColumn> layer, std::size_t i) {
 
 MeshGrid grid_of_field(const Box& bounds, int resolution, MeshTile tile) {
   const SampleGrid samples = make_sample_grid(bounds, resolution);
-  return {{samples, window_of_tile<kBlockCells>(samples, tile), true}};
+  return {{samples, tile_window<kBlockCells>(samples, tile), true}};
 }
 
 MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution) {
   const SampleGrid samples = make_patch_grid(size, resolution);
-  return {{samples, window_of_patch(samples), false}, true, place};
+  return {{samples, patch_window(samples), false}, true, place};
 }
 
 double block_side(const MeshGrid& grid) { return grid.box_in_body(0, 0, 0, 1).longest_side(); }

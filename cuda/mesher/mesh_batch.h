@@ -43,13 +43,13 @@ struct BlockPlace {
   static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 
   int x, y, z;  // place in the grid, in blocks
-  // The owners of samples by owner_of() (synthesis/mesh/block_sampling.h). n >= 0 is block n of the batch, -1
-  // - n is block n of the layer below the batch, and kNone means that there is no such block.
+  // The owners of samples by owner_index() (synthesis/mesh/block_sampling.h). n >= 0 is block n of the batch.
+  // -1 - n is block n of the layer below the batch, and kNone means that there is no such block.
   std::array<std::int32_t, 8> owner;
   std::uint32_t lacking;  // bit s is set where no active block lies beyond side s
   // Rows of samples of a layer are numbered by z, then y, then x. Their numbers follow from the number of the
   // first block of the layer, the number of its blocks, and both for this block's row of blocks.
-  std::uint32_t first_of_layer, blocks_of_layer, first_of_row, blocks_of_row;
+  std::uint32_t first_of_layer, layer_blocks, first_of_row, blocks_of_row;
 
   // The number, among all rows of the batch, of the row of owned samples at local y, z of block number
   // `block`.
@@ -57,7 +57,7 @@ struct BlockPlace {
     constexpr std::uint32_t kRows = kBlockCells;
     const auto y_row = static_cast<std::uint32_t>(local_y - 1),
                z_row = static_cast<std::uint32_t>(local_z - 1);
-    return kRows * kRows * first_of_layer + z_row * kRows * blocks_of_layer +
+    return kRows * kRows * first_of_layer + z_row * kRows * layer_blocks +
            kRows * (first_of_row - first_of_layer) + y_row * blocks_of_row + (block - first_of_row);
   }
 };

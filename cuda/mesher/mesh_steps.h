@@ -32,7 +32,7 @@ struct MeshBatch {
     return found;
   }
   ASTROLITH_HD BlockWindow<kBlockCells> window(std::size_t block) const {
-    return grid.window_of(places[block].x, places[block].y, places[block].z);
+    return grid.block_window(places[block].x, places[block].y, places[block].z);
   }
   ASTROLITH_HD void fail(MeshFailure why) const { *failure = static_cast<std::uint32_t>(why); }
 };
@@ -118,7 +118,7 @@ struct TakeSigns {
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
     MeshBlock& block = batch.blocks[thread / kRows];
-    block.signs[thread % kRows] = signs_of_row(block, thread % kRows);
+    block.signs[thread % kRows] = row_signs(block, thread % kRows);
   }
 };
 
@@ -170,7 +170,7 @@ struct PlaceVertices {
     MeshBlock& block = batch.blocks[t.block];
     const BlockPlace& place = batch.places[t.block];
     std::uint32_t next = first[place.row(static_cast<std::uint32_t>(t.block), t.y, t.z)];
-    for_each_meshed_edge_of_row(block, batch.window(t.block), t.y, t.z, [&](int x, int y, int z, int axis) {
+    for_each_meshed_row_edge(block, batch.window(t.block), t.y, t.z, [&](int x, int y, int z, int axis) {
       block.vertices[3 * MeshBlock::sample(x, y, z) + static_cast<unsigned>(axis)] = first_number + next;
       vertices[next++] = place_vertex(batch.grid, place.z, block, x, y, z, axis);
     });

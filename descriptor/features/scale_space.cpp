@@ -37,7 +37,7 @@ Scale scale_between(const std::vector<Vec3d>& fine, const std::vector<Vec3d>& co
     const double d = dot(scale.normals[i], fine[i] - coarse[i]) / s;
     scale.response.push_back(sign == BlobSign::hollow ? -d : d);
   }
-  const double mean = mean_of(scale.response);
+  const double mean = sample_mean(scale.response);
   for (double& r : scale.response) r -= mean;
   return scale;
 }

@@ -48,11 +48,11 @@ Smoothings smoothings(const EvenedSurface& even, const SmoothingStep& step, std:
 }
 
 double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
-  return sum_of_products(a, b) / static_cast<double>(a.size());
+  return dot_product(a, b) / static_cast<double>(a.size());
 }
 
 void subtract_mean(std::vector<double>& values) {
-  const double mean = mean_of(values);
+  const double mean = sample_mean(values);
   for (double& v : values) v -= mean;
 }
 

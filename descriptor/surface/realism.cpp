@@ -26,8 +26,8 @@ struct Summary {
 Summary summary_of(const LocalStatistic& statistic) {
   std::vector<double> sorted = statistic.values;
   std::sort(sorted.begin(), sorted.end());
-  const double spread = quantile_of_sorted(sorted, 0.75) - quantile_of_sorted(sorted, 0.25);
-  if (!traits_of(statistic.quantity).has_mean) return {median(sorted), spread};
+  const double spread = sorted_quantile(sorted, 0.75) - sorted_quantile(sorted, 0.25);
+  if (!quantity_traits(statistic.quantity).has_mean) return {median(sorted), spread};
   double mean = 0.0;
   for (const double v : sorted) mean += v / static_cast<double>(sorted.size());
   return {mean, spread};
@@ -59,12 +59,12 @@ constexpr double kFlatTolerance = 0.05;
 
 std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, const LocalStatistic& b,
                                                        const Regions& regions_a, const Regions& regions_b) {
-  if (!traits_of(a.quantity).only_flat) {
+  if (!quantity_traits(a.quantity).only_flat) {
     return KolmogorovSmirnov({a.values, regions_a.region_index}, {b.values, regions_b.region_index});
   }
   std::vector<double> sorted = a.values;
   std::sort(sorted.begin(), sorted.end());
-  const double limit = quantile_of_sorted(sorted, kFlatShare);
+  const double limit = sorted_quantile(sorted, kFlatShare);
   const std::vector<double> flat_a = flat_part(a.values, limit), flat_b = flat_part(b.values, limit);
   const KolmogorovSmirnov distance({flat_a, regions_a.region_index}, {flat_b, regions_b.region_index});
   return [distance](const RegionLabels& first) { return std::max(0.0, distance(first) - kFlatTolerance); };
@@ -78,7 +78,8 @@ StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const Su
   c.radius = c.reach = a.radius;
   const double body_radius = std::min(surface_a.body_radius, surface_b.body_radius);
   c.counts_in_p = regions_hold(a.radius, body_radius);
-  c.counts_in_distance = traits_of(a.quantity).counts_in_distance && body_holds_discs(a.radius, body_radius);
+  c.counts_in_distance =
+      quantity_traits(a.quantity).counts_in_distance && body_holds_discs(a.radius, body_radius);
   const Summary sa = summary_of(a), sb = summary_of(b);
   c.middle_a = sa.middle, c.middle_b = sb.middle, c.spread_a = sa.spread, c.spread_b = sb.spread;
   test.distance = distance_of(a, b, surface_a.regions, surface_b.regions);
@@ -147,7 +148,7 @@ void add_ratios(double own, const std::vector<double>& exchanged, LargestRatios&
   std::sort(sorted.begin(), sorted.end());
   // A distance that no exchange reaches is large, and not undefined.
   constexpr double kLeastUsual = 1e-3;
-  const double usual = std::max(quantile_of_sorted(sorted, 0.95), kLeastUsual);
+  const double usual = std::max(sorted_quantile(sorted, 0.95), kLeastUsual);
   largest.own = std::max(largest.own, own / usual);
   for (std::size_t k = 0; k < exchanged.size(); ++k) {
     largest.exchanged[k] = std::max(largest.exchanged[k], exchanged[k] / usual);

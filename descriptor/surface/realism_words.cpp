@@ -32,7 +32,7 @@ std::string length_range(const Band& band, const RealismVerdict& verdict, const 
 
 // Whether another statistic of the same radius differs, and shows this difference.
 bool shown_by_another(const StatisticComparison& c, const RealismVerdict& verdict) {
-  const std::optional<SurfaceQuantity> shown_by = traits_of(c.quantity).follows;
+  const std::optional<SurfaceQuantity> shown_by = quantity_traits(c.quantity).follows;
   return !c.correlation && shown_by &&
          std::any_of(verdict.statistics.begin(), verdict.statistics.end(), [&](const auto& other) {
            return other.quantity == *shown_by && !other.correlation && other.radius == c.radius &&
@@ -68,7 +68,7 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
   std::vector<std::string> others;
   for (const StatisticComparison& c : verdict.statistics) {
     if (!c.differs() || shown_by_another(c, verdict)) continue;
-    const SurfaceQuantityTraits& traits = traits_of(c.quantity);
+    const SurfaceQuantityTraits& traits = quantity_traits(c.quantity);
     if (c.correlation) {
       add_once(correlation_words(c), others);
     } else if (traits.by_scale) {

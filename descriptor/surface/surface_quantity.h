@@ -78,9 +78,9 @@ struct SurfaceQuantityTraits {
 };
 
 std::span<const SurfaceQuantityTraits> surface_quantities();  // in the order of SurfaceQuantity
-inline const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity) {
+inline const SurfaceQuantityTraits& quantity_traits(SurfaceQuantity quantity) {
   return surface_quantities()[static_cast<std::size_t>(quantity)];
 }
-inline const char* name_of(SurfaceQuantity quantity) { return traits_of(quantity).name; }
+inline const char* name_of(SurfaceQuantity quantity) { return quantity_traits(quantity).name; }
 
 }  // namespace astrolith

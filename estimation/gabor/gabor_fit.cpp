@@ -161,12 +161,12 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
   require_texture(exemplar, name);
   PowerSpectrum periodogram =
       exemplar_periodogram(exemplar, options.largest_side, stretch(progress, 0.0, kSpectrumDone));
-  if (!(periodogram.variance() > kLeastTexture * variance_of(exemplar.values))) {
+  if (!(periodogram.variance() > kLeastTexture * sample_variance(exemplar.values))) {
     throw InputError(name + ": holds light from one side or a slope and no texture; use another image");
   }
   GaborFit fit =
       fit_gabor_spectrum(std::move(periodogram), name, options, stretch(progress, kSpectrumDone, 1.0));
-  fit.exemplar_mean = mean_of(exemplar.values);
+  fit.exemplar_mean = sample_mean(exemplar.values);
   return fit;
 }
 

@@ -50,7 +50,7 @@ constexpr int kLeastSquares = 2;
 
 // Whether a model can be fitted to a square: it has a tenth of the photo's contrast, and texture.
 bool has_texture(const GreyImage& square, double photo_variance) {
-  const double variance = variance_of(square.values);
+  const double variance = sample_variance(square.values);
   return variance > 0.01 * photo_variance &&
          exemplar_periodogram(square).variance() > kLeastTexture * variance;
 }
@@ -58,7 +58,7 @@ bool has_texture(const GreyImage& square, double photo_variance) {
 // The squares in the middles of the quarters that have texture.
 std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
   std::vector<GreyImage> squares;
-  const double variance = variance_of(photo.values);
+  const double variance = sample_variance(photo.values);
   for (const int row : {1, 3}) {
     for (const int column : {1, 3}) {
       const int left = column * photo.width / 4 - side / 2, top = row * photo.height / 4 - side / 2;
@@ -75,7 +75,7 @@ GreyImage lobe_texture(const GaborFit& fit, const GreyImage& square, std::uint64
   GaborLayer layer;
   layer.exemplar_rms = layer.height_rms = fit.exemplar_rms;
   layer.lobes = fit.lobes;
-  const double mean = mean_of(square.values);
+  const double mean = sample_mean(square.values);
   GreyImage texture{square.width, square.height, {}};
   for (const float v : synthesize_texture(layer, square.width, square.height, {seed, 0})) {
     texture.values.push_back(mean + double{v});
@@ -125,7 +125,7 @@ TextureScore held_out_score(std::span<const TextureDistributions> textures,
 
 double standard_error(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
-  return std::sqrt(variance_of(values) / (n - 1.0));
+  return std::sqrt(sample_variance(values) / (n - 1.0));
 }
 
 using Scores = std::array<std::vector<TextureScore>, 3>;  // of each model, by the seen square
@@ -137,7 +137,7 @@ HeldOutScore summary_of(const std::vector<TextureScore>& scores) {
     filters.push_back(s.filters);
     sums.push_back(s.sum());
   }
-  return {{mean_of(values), mean_of(filters)}, standard_error(sums)};
+  return {{sample_mean(values), sample_mean(filters)}, standard_error(sums)};
 }
 
 // How far the squares are from each other: a texture of one square rarely comes nearer to the others.
@@ -160,12 +160,12 @@ std::array<std::vector<double>, 3> logarithms_of(const Scores& scores) {
 
 TextureModel simplest_of_the_best(const Scores& scores) {
   const std::array<std::vector<double>, 3> logs = logarithms_of(scores);
-  const auto& best = *std::min_element(logs.begin(), logs.end(),
-                                       [](const auto& a, const auto& b) { return mean_of(a) < mean_of(b); });
+  const auto& best = *std::min_element(
+      logs.begin(), logs.end(), [](const auto& a, const auto& b) { return sample_mean(a) < sample_mean(b); });
   const auto is_near = [&](const std::vector<double>& model) {
     std::vector<double> worse;
     for (std::size_t k = 0; k < model.size(); ++k) worse.push_back(model[k] - best[k]);
-    return mean_of(worse) <= standard_error(worse);
+    return sample_mean(worse) <= standard_error(worse);
   };
   const auto simplest = std::find_if(logs.begin(), logs.end(), is_near);
   const auto* const taken = simplest == logs.end() ? &best : &*simplest;

@@ -96,7 +96,7 @@ std::size_t PhotoFit::lobes() const {
   return count;
 }
 
-double FittedChannel::pixel_variance() const { return variance_of(exemplar.values); }
+double FittedChannel::pixel_variance() const { return sample_variance(exemplar.values); }
 
 double PhotoFit::pursuit_gap() const {
   double largest = 0.0;

@@ -264,7 +264,8 @@ std::vector<double> histogram(const std::vector<double>& values, double mean, do
 }
 
 void draw_grey_values(Figure& page, const Rectangle& at, const TextureReport& report) {
-  const double mean = mean_of(report.photo_values), deviation = std::sqrt(variance_of(report.photo_values));
+  const double mean = sample_mean(report.photo_values),
+               deviation = std::sqrt(sample_variance(report.photo_values));
   const std::vector<double> photo_histogram = histogram(report.photo_values, mean, deviation),
                             texture_histogram = histogram(report.texture_values, mean, deviation);
   const double most = std::max(*std::max_element(photo_histogram.begin(), photo_histogram.end()),

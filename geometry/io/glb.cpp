@@ -79,7 +79,7 @@ class GlbDocument {
   // The node turns the body about x, so that +z up becomes +y up. Quaternions are (x y z w).
   static Json node(const MeshFileInfo& info, std::size_t level) {
     constexpr double kHalf = 0.70710678118654757;
-    const double scale = metres_of(info.length_unit);
+    const double scale = metres_per_unit(info.length_unit);
     Json result = {
         {"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
     result["scale"] = {scale, scale, scale};
@@ -195,7 +195,7 @@ class GlbDocument {
 std::array<std::uint16_t, 256> linear_shorts() {
   std::array<std::uint16_t, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    table[i] = static_cast<std::uint16_t>(65535.0 * linear_of_srgb(static_cast<double>(i) / 255.0) + 0.5);
+    table[i] = static_cast<std::uint16_t>(65535.0 * srgb_to_linear(static_cast<double>(i) / 255.0) + 0.5);
   }
   return table;
 }

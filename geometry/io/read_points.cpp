@@ -26,7 +26,7 @@ double scale_to(const TableLayout& layout, std::string_view unit, const NamedTab
   if (layout.unit.empty()) return 1.0;
   if (!has_known_length(layout.unit))
     table.fail("the columns state lengths in " + astrolith::quoted(layout.unit), "convert them to m or km");
-  return unit.empty() ? 1.0 : metres_of(layout.unit) / metres_of(unit);
+  return unit.empty() ? 1.0 : metres_per_unit(layout.unit) / metres_per_unit(unit);
 }
 
 void require_width(const NamedTable& table, const TableLayout& layout) {

@@ -38,12 +38,12 @@ class Descriptor {
 };
 
 // The size of the file in bytes; negative where it cannot be told.
-off_t size_of(int descriptor) {
+off_t file_size(int descriptor) {
   struct stat status {};
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) ? status.st_size : -1;
 }
 
-bool ends_in_the_middle_of_a_line(int descriptor, off_t size) {
+bool ends_within_line(int descriptor, off_t size) {
   char last = '\n';
   return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n';
 }
@@ -62,12 +62,14 @@ namespace fs = std::filesystem;
 
 constexpr mode_t kMode = 0666;  // less the umask
 
-fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : "."; }
+fs::path parent_folder(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : ".";
+}
 
 // The name under which the system lists an open file.
 std::string listed_name(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 
-FileHandle stream_of(int descriptor) {
+FileHandle open_stream(int descriptor) {
   FileHandle file(::fdopen(descriptor, "w+b"));
   if (!file) ::close(descriptor);
   return file;
@@ -76,9 +78,9 @@ FileHandle stream_of(int descriptor) {
 // Null where the file system or the system knows no nameless files.
 FileHandle open_linkable_file(const fs::path& target) {
 #ifdef O_TMPFILE
-  const int descriptor = ::open(folder_of(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+  const int descriptor = ::open(parent_folder(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
   if (descriptor < 0) return nullptr;
-  if (::access(listed_name(descriptor).c_str(), F_OK) == 0) return stream_of(descriptor);
+  if (::access(listed_name(descriptor).c_str(), F_OK) == 0) return open_stream(descriptor);
   ::close(descriptor);
 #else
   static_cast<void>(target);
@@ -88,7 +90,7 @@ FileHandle open_linkable_file(const fs::path& target) {
 
 FileHandle create(const char* name) {
   const int descriptor = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-  return descriptor < 0 ? nullptr : stream_of(descriptor);
+  return descriptor < 0 ? nullptr : open_stream(descriptor);
 }
 
 std::atomic<int> g_unsynced{std::getenv("ASTROLITH_NO_SYNC") != nullptr ? 1 : 0};
@@ -116,7 +118,7 @@ fs::path through_links(fs::path target) {
   for (int i = 0; i < kMostLinks; ++i) {
     const fs::path next = fs::read_symlink(target, error);
     if (error) return target;  // no link
-    target = folder_of(target) / next;
+    target = parent_folder(target) / next;
   }
   throw InputError(target.string() + ": is a link that leads to itself; give the name of a file");
 }
@@ -130,7 +132,7 @@ void require_not_read_only(const fs::path& target) {
 }
 
 // The new file has the mode of the one that it replaces, and its owner where that is allowed.
-void take_rights_of(const fs::path& target, int descriptor) {
+void copy_permissions(const fs::path& target, int descriptor) {
   struct stat status;
   if (::stat(target.c_str(), &status) != 0) return;
   const bool owned = ::fchown(descriptor, status.st_uid, status.st_gid) == 0;
@@ -163,9 +165,9 @@ void append_line(const std::filesystem::path& file, std::string_view line) {
   const Descriptor descriptor(file);
   ::flock(descriptor.number(),
           LOCK_EX);  // until the descriptor is closed; a file system without locks has none
-  const off_t size = size_of(descriptor.number());
+  const off_t size = file_size(descriptor.number());
   if (size < 0) throw InputError(file.string() + ": is no regular file; name another");
-  std::string text(ends_in_the_middle_of_a_line(descriptor.number(), size) ? "\n" : "");
+  std::string text(ends_within_line(descriptor.number(), size) ? "\n" : "");
   text.append(line).append(1, '\n');
   if (write_all(descriptor.number(), text)) return;
   const std::string reason = std::strerror(errno);
@@ -190,7 +192,7 @@ TemporaryName::TemporaryName(const fs::path& target) {
   // Process numbers would not do: programs in two containers may share both the number and the folder.
   std::random_device random;
   const std::string own = std::to_string(random()) + "_" + std::to_string(random());
-  name_ = (folder_of(target) / (".astrolith_" + own + ".tmp")).string();
+  name_ = (parent_folder(target) / (".astrolith_" + own + ".tmp")).string();
   for (std::atomic<const char*>& name : temporary_files()) {
     const char* nobody = nullptr;
     if (name.compare_exchange_strong(nobody, name_.c_str())) {
@@ -274,9 +276,9 @@ void OutputFile::compress() {
 void OutputFile::commit() {
   if (packed_) compress();
   const int descriptor = duplicate_descriptor();
-  take_rights_of(target_, descriptor);
+  copy_permissions(target_, descriptor);
   bool done = std::fclose(file_.release()) == 0;
-  done = done && sync(descriptor) && name_it(descriptor) && sync_folder(folder_of(target_));
+  done = done && sync(descriptor) && name_it(descriptor) && sync_folder(parent_folder(target_));
   const int error = errno;
   ::close(descriptor);
   errno = error;

@@ -9,13 +9,13 @@
 
 namespace astrolith {
 
-std::string sha256_of(std::string_view bytes) {
+std::string sha256(std::string_view bytes) {
   Sha256 hash;
   hash.update(bytes.data(), bytes.size());
   return hash.hex();
 }
 
-std::string sha256_of_file(const std::filesystem::path& file) {
+std::string file_sha256(const std::filesystem::path& file) {
   const auto refuse = [&] {
     throw InputError(file.string() + ": cannot read (" + std::strerror(errno) + "); check the name");
   };

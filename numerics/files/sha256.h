@@ -30,8 +30,8 @@ class Sha256 {
 };
 
 // 64 lower-case hexadecimal digits.
-std::string sha256_of(std::string_view bytes);
+std::string sha256(std::string_view bytes);
 // The SHA-256 of a file, as of a text. Throws InputError when the file cannot be read, as a pipe cannot.
-std::string sha256_of_file(const std::filesystem::path& file);
+std::string file_sha256(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -28,7 +28,7 @@ constexpr std::int64_t kChunk = 1024;
 class Field {
  public:
   Field(const std::string& json, const std::filesystem::path& name)
-      : recipe_(loaded_recipe(json, name)), field_(field_of_region(recipe_, name, Region{})) {}
+      : recipe_(loaded_recipe(json, name)), field_(make_region_field(recipe_, name, Region{})) {}
 
   const ImplicitField& operator*() const { return field_; }
 

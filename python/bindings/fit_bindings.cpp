@@ -26,7 +26,7 @@ static_assert(sizeof(Sphere) == 4 * sizeof(double), "spheres are rows of x, y, z
 // The images of layers that another recipe gave: their paths become relative to the current folder.
 void find_images_from_here(Recipe& recipe) {
   for (Layer& layer : recipe.layers) {
-    NamedImage* named = image_of(layer);
+    NamedImage* named = find_image(layer);
     if (named != nullptr && named->pixels != nullptr && !named->pixels->file.empty())
       named->image = std::filesystem::proximate(named->pixels->file).generic_string();
   }

@@ -24,7 +24,7 @@ nb::typed<nb::dict, nb::str, nb::any> height_map_of(const Rows<double>& vertices
                                                     const Rows<std::uint32_t>& faces,
                                                     const std::array<double, 3>& center, double length,
                                                     int pixels, const std::string& unit, const Plane& plane) {
-  const double metres = metres_of(unit);
+  const double metres = metres_per_unit(unit);
   HeightMap map = run_job(nb::none(), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState&) {
     const auto& [right, ahead, up, origin] = plane;
     const GroundAxes axes{vector(right), vector(ahead), vector(up)};

@@ -65,7 +65,7 @@ void bind_recipes(nb::module_& module) {
          const fs::path& base_name, const std::string& lengths) {
         return recipe_to_json(lay_on_base(parse_recipe(details, details_name), details_name,
                                           parse_recipe(base, base_name.string()), base_name.string(),
-                                          base_lengths_of(lengths)));
+                                          parse_base_lengths(lengths)));
       },
       nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), nb::arg("lengths"),
       unlocked);

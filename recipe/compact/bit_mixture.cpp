@@ -36,7 +36,7 @@ constexpr std::array<std::uint16_t, kMantissas> kFirstPowers = [] {
 
 }  // namespace
 
-int log_of(std::uint64_t value) {
+int log2_units(std::uint64_t value) {
   const int bits = std::bit_width(value);
   const std::uint64_t mantissa = value << (64 - bits) >> 1;
   std::size_t power = kFirstPowers[(mantissa >> 52) % kMantissas];
@@ -50,7 +50,7 @@ std::uint64_t logistic_tail(std::int64_t x) {
   return (power << 22) / (((std::uint64_t{1} << 40) + power) >> 18);
 }
 
-std::uint32_t share_of(std::int64_t opinion) {
+std::uint32_t to_probability(std::int64_t opinion) {
   const auto tail = static_cast<std::uint32_t>(logistic_tail(opinion < 0 ? -opinion : opinion) >> 24);
   const std::uint32_t less = std::max(tail, kLeastChance);
   return opinion < 0 ? less : kProbabilityScale - less;

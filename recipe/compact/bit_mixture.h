@@ -16,18 +16,18 @@ namespace astrolith {
 inline constexpr int kOctave = 256;  // a factor of two, in the units of opinions
 
 // log2(value) for value > 0, in the units of opinions.
-int log_of(std::uint64_t value);
+int log2_units(std::uint64_t value);
 
 // The share 1 / (1 + 2^x) of 2^40 for x >= 0: the tail of the logistic distribution.
 std::uint64_t logistic_tail(std::int64_t x);
 
 // The share of a 1 that an opinion means, of kProbabilityScale, with some probability left for either bit.
-std::uint32_t share_of(std::int64_t opinion);
+std::uint32_t to_probability(std::int64_t opinion);
 
 // The share of ones among the bits of one context. Later bits count more.
 class BitCounter {
  public:
-  int opinion() const { return log_of(ones_) - log_of(kProbabilityScale - ones_); }
+  int opinion() const { return log2_units(ones_) - log2_units(kProbabilityScale - ones_); }
   void learn(bool bit);
 
  private:
@@ -47,7 +47,7 @@ class BitMixture {
   std::uint32_t share(const Opinions& opinions) const {
     std::int64_t sum = 0;
     for (std::size_t i = 0; i < N; ++i) sum += std::int64_t{opinions[i]} * weights_[i];
-    return share_of(sum / kWhole);
+    return to_probability(sum / kWhole);
   }
   void learn(const Opinions& opinions, std::uint32_t share, bool bit) {
     const std::int64_t error = (bit ? std::int64_t{kProbabilityScale} : 0) - std::int64_t{share};

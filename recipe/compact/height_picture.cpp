@@ -75,7 +75,7 @@ void code_mask(HeightPicture& picture, BitCoder& coder) {
 constexpr std::uint64_t kSides = kMostHeightPictureSide + 1;
 constexpr std::uint64_t kValues = 65536;
 
-HeightRange range_of(const HeightPicture& picture) {
+HeightRange height_range(const HeightPicture& picture) {
   HeightRange range{65535, 0};
   for (const std::uint16_t value : picture.values) {
     if (value == 0) continue;
@@ -96,7 +96,7 @@ void encode_one(const HeightPicture& picture, Prediction prediction, RangeEncode
   BitCoder coder(encoder);
   code_mask(copy, coder);
   if (!has_heights(copy)) return;
-  const HeightRange range = range_of(copy);
+  const HeightRange range = height_range(copy);
   encoder.encode_uniform(static_cast<std::uint64_t>(range.low), kValues);
   encoder.encode_uniform(static_cast<std::uint64_t>(range.high), kValues);
   code_heights(copy, range, prediction, coder);
@@ -117,11 +117,11 @@ void decode_one(HeightPicture& picture, Prediction prediction, RangeDecoder& dec
 int decode_side(RangeDecoder& decoder) { return static_cast<int>(decoder.decode_uniform(kSides)); }
 
 // A large picture is cut into bands of rows, each a stream of its own, so that several threads can code it.
-constexpr std::size_t kMostPixelsOfOne = std::size_t{1} << 20;
+constexpr std::size_t kMostBandPixels = std::size_t{1} << 20;
 constexpr int kBands = 8;
 
 // The band's rows of a picture, without values.
-HeightPicture band_of(const HeightPicture& picture, int band) {
+HeightPicture band_layout(const HeightPicture& picture, int band) {
   const auto row = [&](int number) { return picture.height * number / kBands; };
   return {picture.width, row(band + 1) - row(band), {}};
 }
@@ -130,7 +130,7 @@ std::array<std::string, kBands> encoded_bands(const HeightPicture& picture) {
   std::array<HeightPicture, kBands> bands;
   auto from = picture.values.begin();
   for (int b = 0; b < kBands; ++b) {
-    HeightPicture& band = bands[static_cast<std::size_t>(b)] = band_of(picture, b);
+    HeightPicture& band = bands[static_cast<std::size_t>(b)] = band_layout(picture, b);
     const auto end = from + static_cast<std::ptrdiff_t>(band.pixels());
     band.values.assign(from, end);
     from = end;
@@ -149,7 +149,7 @@ void decode_bands(const std::array<std::string, kBands>& streams, HeightPicture&
   std::array<HeightPicture, kBands> bands;
   parallel_for(0, kBands, [&](std::int64_t number) {
     const auto b = static_cast<std::size_t>(number);
-    HeightPicture& band = bands[b] = band_of(picture, static_cast<int>(b));
+    HeightPicture& band = bands[b] = band_layout(picture, static_cast<int>(b));
     RangeDecoder decoder(streams[b]);
     if (decode_side(decoder) != band.width || decode_side(decoder) != band.height) throw DamagedStream();
     decode_one(band, Prediction::kQuick, decoder);
@@ -161,7 +161,7 @@ void decode_bands(const std::array<std::string, kBands>& streams, HeightPicture&
 }  // namespace
 
 void encode(const HeightPicture& picture, RangeEncoder& encoder) {
-  if (picture.pixels() <= kMostPixelsOfOne) return encode_one(picture, Prediction::kClose, encoder);
+  if (picture.pixels() <= kMostBandPixels) return encode_one(picture, Prediction::kClose, encoder);
   // No picture of one stream has rows without columns.
   encoder.encode_uniform(0, kSides);
   encoder.encode_uniform(kBands, kSides);

@@ -42,7 +42,7 @@ class HeightSearch {
   bool at_least(int threshold, std::size_t question);
   void find_bin(int start, int width);
   int opinion(const HeightGuess& guess, int threshold) const;
-  std::size_t class_of(int error) const;
+  std::size_t error_class(int error) const;
 
   int steps_, unit_;
   BitCoder& coder_;
@@ -65,14 +65,14 @@ std::uint64_t logistic_mass(std::int64_t from, std::int64_t to) {
 }
 
 constexpr int kMostOpinion = 10 * kOctave;
-constexpr int kBinsOfOneWidth = 8;  // the bins after them double their width
+constexpr int kUniformBins = 8;  // the bins after them double their width
 
 int HeightSearch::code(int step, const HeightGuess& best, const std::array<HeightGuess, 2>& guesses) {
   step_ = step;
   low_ = 0;
   high_ = steps_;
   guesses_ = guesses;
-  error_class_ = class_of(best.error);
+  error_class_ = error_class(best.error);
   find_bin((best.height + unit_ / 2) / unit_, std::max(1, best.error / (2 * kErrorParts * unit_)));
   while (high_ - low_ > 1) at_least(low_ + (high_ - low_) / 2, kMostBins + 1);
   return low_;
@@ -87,7 +87,7 @@ void HeightSearch::find_bin(int start, int width) {
     if (edge <= low_ || edge >= high_) return;
     const int model = std::min(bin, kMostBins) + (up ? 0 : kMostBins + 1);
     if (at_least(edge, static_cast<std::size_t>(model)) != up) return;
-    if (bin >= kBinsOfOneWidth) width *= 2;
+    if (bin >= kUniformBins) width *= 2;
   }
 }
 
@@ -115,13 +115,13 @@ int HeightSearch::opinion(const HeightGuess& guess, int threshold) const {
   const std::int64_t middle = place(threshold);
   const std::uint64_t below = logistic_mass(place(low_), middle) + 1;
   const std::uint64_t above = logistic_mass(middle, place(high_)) + 1;
-  return std::clamp(log_of(above) - log_of(below), -kMostOpinion, kMostOpinion);
+  return std::clamp(log2_units(above) - log2_units(below), -kMostOpinion, kMostOpinion);
 }
 
 // Half octaves of the expected error. The least class holds all errors below a sixteenth of a step.
-std::size_t HeightSearch::class_of(int error) const {
-  const int above = log_of(static_cast<std::uint64_t>(error) * 16) -
-                    log_of(static_cast<std::uint64_t>(kErrorParts * unit_));
+std::size_t HeightSearch::error_class(int error) const {
+  const int above = log2_units(static_cast<std::uint64_t>(error) * 16) -
+                    log2_units(static_cast<std::uint64_t>(kErrorParts * unit_));
   return static_cast<std::size_t>(std::clamp(2 * above / kOctave, 0, static_cast<int>(kErrorClasses) - 1));
 }
 
@@ -157,7 +157,7 @@ constexpr int kPredictorBits = 16;  // of a difference of heights
 constexpr int kMostFineBits = 4;
 
 // The fine units of a step: as many as the predictors bear.
-int unit_of(int steps) {
+int fine_units(int steps) {
   const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(steps)));
   return 1 << std::min(kMostFineBits, kPredictorBits - std::min(kPredictorBits, bits));
 }
@@ -203,7 +203,7 @@ class HeightCoder {
       : picture_(picture),
         low_(range.low),
         steps_(range.high - range.low + 1),
-        unit_(unit_of(steps_)),
+        unit_(fine_units(steps_)),
         last_(steps_ / 2 * unit_),
         heights_(picture.width, picture.height, kHole),
         predictors_{HeightPredictor(picture.width,

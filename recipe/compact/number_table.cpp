@@ -246,7 +246,7 @@ std::size_t longest_run(const IntegerRows& rows) {
   return longest;
 }
 
-std::vector<double> column_of(const NumberTable& table, std::size_t column) {
+std::vector<double> copy_column(const NumberTable& table, std::size_t column) {
   std::vector<double> numbers;
   for (std::size_t row = 0; row < table.rows(); ++row)
     numbers.push_back(table.values[row * table.columns + column]);
@@ -262,7 +262,7 @@ struct TableIntegers {
   explicit TableIntegers(const NumberTable& table) {
     rows.columns = table.columns;
     rows.values.resize(table.values.size());
-    for (std::size_t c = 0; c < table.columns; ++c) add_column(c, column_of(table, c));
+    for (std::size_t c = 0; c < table.columns; ++c) add_column(c, copy_column(table, c));
   }
   bool on_lattices() const {
     return std::all_of(lattices.begin(), lattices.end(),
@@ -333,7 +333,7 @@ CoarseRange decode_range(RangeDecoder& decoder) {
   return CoarseRange(shift, first, further);
 }
 
-std::int64_t bits_of(std::uint64_t high, std::uint64_t low) {
+std::int64_t join_bits(std::uint64_t high, std::uint64_t low) {
   return std::bit_cast<std::int64_t>(high << 32 | low);
 }
 
@@ -409,7 +409,7 @@ NumberTable TableDecoder::decode(std::size_t most_values) {
     if (!lattices[c]) {
       const std::uint64_t high = decoder_.decode_uniform(std::uint64_t{1} << 32);
       table.values.push_back(
-          std::bit_cast<double>(bits_of(high, decoder_.decode_uniform(std::uint64_t{1} << 32))));
+          std::bit_cast<double>(join_bits(high, decoder_.decode_uniform(std::uint64_t{1} << 32))));
       continue;
     }
     const std::int64_t k =

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t kLeastShare = 24;
 constexpr std::uint8_t kMostCounts = 250;
 
-std::uint32_t hash_of(std::uint64_t bytes, int count) {
+std::uint32_t hash_bytes(std::uint64_t bytes, int count) {
   const std::uint64_t kept = bytes & ((std::uint64_t{1} << (8 * count)) - 1);
   return static_cast<std::uint32_t>(((kept + 1) * 0x9e3779b97f4a7c15u) >> 32);
 }
@@ -88,7 +88,7 @@ void TextModel::learn(bool bit) {
 
 void TextModel::advance(std::uint8_t byte) {
   last_bytes_ = last_bytes_ << 8 | byte;
-  for (int order = 0; order <= kLongest; ++order) hashes_[order] = hash_of(last_bytes_, order);
+  for (int order = 0; order <= kLongest; ++order) hashes_[order] = hash_bytes(last_bytes_, order);
 }
 
 }  // namespace astrolith

@@ -26,7 +26,7 @@ struct TexelRange {
   int x0, y0, x1, y1;
 };
 
-TexelRange range_of(const std::array<TexelPoint, 3>& c) {
+TexelRange covered_texels(const std::array<TexelPoint, 3>& c) {
   const auto first = [](double low) { return static_cast<int>(std::ceil(low - 0.5)); };
   const auto last = [](double high) { return static_cast<int>(std::floor(high - 0.5)); };
   return {first(std::min({c[0].x, c[1].x, c[2].x})), first(std::min({c[0].y, c[1].y, c[2].y})),
@@ -62,33 +62,32 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
     }
   }
   // A triangle belongs to the tiles that its box reaches, with their borders.
-  const auto for_each_tile_of = [&](std::uint32_t f, const auto& use) {
+  const auto for_each_tile = [&](std::uint32_t f, const auto& use) {
     const ChartTiles& chart = charts[atlas.chart_of[f]];
-    const TexelRange range = range_of(texel_corners(atlas, f));
-    const auto tile_of = [](int texel, int begin, int count) {
+    const TexelRange range = covered_texels(texel_corners(atlas, f));
+    const auto tile_at = [](int texel, int begin, int count) {
       return std::clamp((texel - begin) / TexelTile::kSide, 0, count - 1);
     };
-    for (int j = tile_of(range.y0 - 1, chart.y, chart.rows); j <= tile_of(range.y1 + 1, chart.y, chart.rows);
+    for (int j = tile_at(range.y0 - 1, chart.y, chart.rows); j <= tile_at(range.y1 + 1, chart.y, chart.rows);
          ++j) {
-      for (int i = tile_of(range.x0 - 1, chart.x, chart.columns);
-           i <= tile_of(range.x1 + 1, chart.x, chart.columns); ++i)
+      for (int i = tile_at(range.x0 - 1, chart.x, chart.columns);
+           i <= tile_at(range.x1 + 1, chart.x, chart.columns); ++i)
         use(chart.first + static_cast<std::uint32_t>(j * chart.columns + i));
     }
   };
   const auto count = static_cast<std::uint32_t>(atlas.coordinates.triangles.size());
   for (std::uint32_t f = 0; f < count; ++f)
-    for_each_tile_of(f, [&](std::uint32_t tile) { ++tiles_[tile].count; });
+    for_each_tile(f, [&](std::uint32_t tile) { ++tiles_[tile].count; });
   std::uint32_t sum = 0;
   for (TexelTile& tile : tiles_) tile.first = sum, sum += tile.count, tile.count = 0;
   triangles_.resize(sum);
   for (std::uint32_t f = 0; f < count; ++f) {
-    for_each_tile_of(f,
-                     [&](std::uint32_t tile) { triangles_[tiles_[tile].first + tiles_[tile].count++] = f; });
+    for_each_tile(f, [&](std::uint32_t tile) { triangles_[tiles_[tile].first + tiles_[tile].count++] = f; });
   }
   std::erase_if(tiles_, [](const TexelTile& tile) { return tile.count == 0; });
 }
 
-void AtlasTexels::places_of(const TexelTile& tile, std::span<TexelPlace> places) const {
+void AtlasTexels::locate(const TexelTile& tile, std::span<TexelPlace> places) const {
   std::fill(places.begin(), places.end(), TexelPlace{});
   for (std::uint32_t k = 0; k < tile.count; ++k) draw(triangles_[tile.first + k], tile, places);
 }
@@ -97,7 +96,7 @@ void AtlasTexels::draw(std::uint32_t triangle, const TexelTile& tile, std::span<
   const std::array<TexelPoint, 3> c = texel_corners(textured_.atlas, triangle);
   const double area = texel_turn(c[0], c[1], c[2].x, c[2].y);
   if (area == 0.0) return;
-  const TexelRange range = range_of(c);
+  const TexelRange range = covered_texels(c);
   const Triangle& corners = textured_.atlas.coordinates.triangles[triangle];
   for (int y = std::max(range.y0, tile.y - 1); y <= std::min(range.y1, tile.y + tile.height); ++y) {
     for (int x = std::max(range.x0, tile.x - 1); x <= std::min(range.x1, tile.x + tile.width); ++x) {

@@ -46,7 +46,7 @@ class AtlasTexels {
   std::span<const TexelTile> tiles() const { return tiles_; }
   // (height + 2 x width + 2) The texels of a tile with its border, row-major. A centre on the side of several
   // triangles belongs to the first.
-  void places_of(const TexelTile& tile, std::span<TexelPlace> places) const;
+  void locate(const TexelTile& tile, std::span<TexelPlace> places) const;
 
  private:
   void draw(std::uint32_t triangle, const TexelTile& tile, std::span<TexelPlace> places) const;

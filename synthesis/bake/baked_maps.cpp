@@ -112,7 +112,7 @@ std::vector<std::uint8_t> ambient_occlusion(std::span<const std::uint8_t> unoccl
 
 constexpr float kTightestCurve = 4.0f;  // texels: the radius at the ends of the map of curvature
 
-std::uint8_t byte_of_share(float value) {  // of -1 .. 1
+std::uint8_t share_to_byte(float value) {  // of -1 .. 1
   return static_cast<std::uint8_t>(127.5f + 127.5f * std::clamp(value, -1.0f, 1.0f) + 0.5f);
 }
 
@@ -138,7 +138,7 @@ struct TileWork {
   std::vector<SurfacePoint> points;
   std::vector<MeshVertex> vertices;  // whose layers are looked up
   std::vector<VertexLabel> labels;
-  std::vector<std::int16_t> label_of;  // the label of each point
+  std::vector<std::int16_t> point_labels;  // the label of each point
   std::vector<VertexColor> colors;
   std::vector<Vec3f> albedo;
 };
@@ -191,7 +191,7 @@ class MapBaker {
     // Not kept for a thread: layers are looked up in loops of their own, in which it may begin another tile.
     const auto owned = std::make_unique<TileWork>();
     TileWork& work = *owned;
-    texels_.places_of(tile, {work.places.data(), tile.num_texels()});
+    texels_.locate(tile, {work.places.data(), tile.num_texels()});
     work.points.clear();
     for (std::size_t i = 0; i < tile.num_texels(); ++i) {
       const TexelPlace& place = work.places[i];
@@ -211,7 +211,7 @@ class MapBaker {
   // A label stands for a square of 2 x 2 texels: that of its first covered one. Colours are of each texel.
   void look_up_layers(const TexelTile& tile, TileWork& work) const {
     work.vertices.clear();
-    work.label_of.resize(work.points.size());
+    work.point_labels.resize(work.points.size());
     std::array<std::int16_t, TexelTile::kMostTexels> first_texels;
     first_texels.fill(-1);
     for (std::size_t i = 0; i < tile.num_texels(); ++i) {
@@ -223,7 +223,7 @@ class MapBaker {
         known = static_cast<std::int16_t>(work.vertices.size());
         work.vertices.push_back({work.points[point].place(), work.points[point].normal});
       }
-      work.label_of[point] = known;
+      work.point_labels[point] = known;
     }
     work.labels.resize(work.vertices.size());
     sources_.labels.label({}, work.vertices, work.labels);
@@ -246,13 +246,13 @@ class MapBaker {
     const SurfacePoint& point = work.points[number];
     const std::size_t i = index(tile.x + x, tile.y + y);
     const Vec3f v = in_tangent_space(work.places[at], point.normal);
-    maps_.normal[3 * i] = byte_of_share(v.x);
-    maps_.normal[3 * i + 1] = byte_of_share(v.y);
-    maps_.normal[3 * i + 2] = byte_of_share(v.z);
+    maps_.normal[3 * i] = share_to_byte(v.x);
+    maps_.normal[3 * i + 1] = share_to_byte(v.y);
+    maps_.normal[3 * i + 2] = share_to_byte(v.z);
     heights_[i] = point.height;
     unoccluded_[i] = occlusion_.is_unoccluded(tile.x + x, tile.y + y, point.place(), point.normal) ? 1 : 0;
     maps_.curvature[i] = curvature_byte(work, at, static_cast<std::size_t>(tile.padded_width()));
-    const VertexLabel& label = work.labels[static_cast<std::size_t>(work.label_of[number])];
+    const VertexLabel& label = work.labels[static_cast<std::size_t>(work.point_labels[number])];
     maps_.label[i] = static_cast<std::uint8_t>(std::min(label.label, 255));
     if (sources_.colors != nullptr) std::copy_n(work.colors[number].begin(), 3, &maps_.color[3 * i]);
     if (has_albedo()) {

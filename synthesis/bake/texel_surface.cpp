@@ -36,7 +36,7 @@ struct TexelSeeker {
 };
 
 // The box of points and of the way to the surface.
-Box box_of_ways(std::span<const SurfacePoint> points, float reach) {
+Box search_box(std::span<const SurfacePoint> points, float reach) {
   Box box;
   for (const SurfacePoint& p : points) box.extend({double{p.start.x}, double{p.start.y}, double{p.start.z}});
   return widened(box, double{reach} + 0x1p-22 * largest_coordinate(box));
@@ -52,7 +52,7 @@ class SurfaceSearch {
         texel_(texel),
         grid_(grid),
         points_(points),
-        block_(field.gather(box_of_ways(points, texel))) {}
+        block_(field.gather(search_box(points, texel))) {}
 
   void run() {
     PointNumbers first, others, left;
@@ -122,7 +122,7 @@ class SurfaceSearch {
   void reach(float limit) {
     if (limit <= limit_) return;
     limit_ = limit;
-    block_ = field_.gather(box_of_ways(points_, limit_ + texel_));
+    block_ = field_.gather(search_box(points_, limit_ + texel_));
   }
 
   // Returns the largest |F| at a start.

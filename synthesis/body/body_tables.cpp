@@ -16,7 +16,7 @@ namespace {
 // a layer is its number in the recipe.
 constexpr std::uint32_t kBodyStream = 0xffffffffu;
 
-OperatorParameters<double> parameters_of(const BodyOperation& operation) {
+OperatorParameters<double> operator_parameters(const BodyOperation& operation) {
   return {operation.kind,  operation.alpha, operation.exponent,
           operation.width, operation.bulge, {1.0 / operation.reach[0], 1.0 / operation.reach[1]}};
 }
@@ -28,7 +28,7 @@ OperatorParameters<float> in_float(const OperatorParameters<double>& o) {
 }
 
 // The largest sum |ds/df| + |ds/dg| of an operator.
-double slope_of(const OperatorParameters<double>& o) {
+double operator_slope(const OperatorParameters<double>& o) {
   const auto r_function = [](double alpha) { return (2.0 + std::sqrt(2.0 * (1.0 - alpha))) / (1.0 + alpha); };
   switch (o.kind) {
     case Operator::kBlend:
@@ -68,11 +68,12 @@ class BodyBuilder {
     Part part = add_leaf(body, number);
     for (const BodyOperation& operation : body.operations) {
       const Part operand = add(operation.operand.front());
-      const OperatorParameters<double> parameters = parameters_of(operation);
+      const OperatorParameters<double> parameters = operator_parameters(operation);
       steps_.push_back({false, 0, in_float(parameters), parameters});
       part.supports.extend(operand.supports.min);
       part.supports.extend(operand.supports.max);
-      part.lipschitz_bound = std::max(part.lipschitz_bound, operand.lipschitz_bound) * slope_of(parameters);
+      part.lipschitz_bound =
+          std::max(part.lipschitz_bound, operand.lipschitz_bound) * operator_slope(parameters);
     }
     return part;
   }
@@ -116,7 +117,7 @@ struct Columns {
   float* at(std::size_t column) { return values.data() + column * n; }
 };
 
-std::span<const MetaballSphere<float>> spheres_of(const LeafLists& lists, std::uint32_t leaf) {
+std::span<const MetaballSphere<float>> leaf_spheres(const LeafLists& lists, std::uint32_t leaf) {
   return {lists.spheres + lists.first[leaf], lists.first[leaf + 1] - lists.first[leaf]};
 }
 
@@ -206,7 +207,7 @@ ReachingMetaballs metaballs_reaching(const BodyTables& body, const ArrayView& ar
   for (std::uint32_t l = 0; l < body.leaves.count; ++l) {
     const double cutoff = double{arrays[body.leaves][l].metaballs.cutoff_squared};
     const Box box = leaf_box(body, arrays, l, at);
-    for (const MetaballSphere<float>& sphere : spheres_of(lists, l)) {
+    for (const MetaballSphere<float>& sphere : leaf_spheres(lists, l)) {
       if (reaches_box(sphere, cutoff, box)) reaching.spheres.push_back(sphere);
     }
     reaching.first.push_back(static_cast<std::uint32_t>(reaching.spheres.size()));
@@ -219,13 +220,13 @@ void evaluate_body(const BodyTables& body, const ArrayView& arrays, const LeafLi
                    float* gradient_y, float* gradient_z) {
   const BodyLeaf* leaves = arrays[body.leaves];
   if (body.plain()) {
-    return evaluate_metaballs({leaves[0].metaballs, spheres_of(lists, 0)}, n, x, y, z, distance, gradient_x,
+    return evaluate_metaballs({leaves[0].metaballs, leaf_spheres(lists, 0)}, n, x, y, z, distance, gradient_x,
                               gradient_y, gradient_z);
   }
   std::vector<Columns> stack;
   for (const BodyStep& step : arrays.span(body.steps)) {
     if (step.is_leaf) {
-      evaluate_operand(leaves[step.leaf], arrays, spheres_of(lists, step.leaf), n, x, y, z,
+      evaluate_operand(leaves[step.leaf], arrays, leaf_spheres(lists, step.leaf), n, x, y, z,
                        stack.emplace_back(n));
     } else {
       combine(step.combine, n, stack[stack.size() - 2], stack.back());

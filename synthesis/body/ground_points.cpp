@@ -30,7 +30,7 @@ void evaluate(const BodyGround& ground, GroundPoints& points) {
   const int n = static_cast<int>(points.size());
   auto& [x, y, z, distance, gx, gy, gz] = points;
   if (ground.origin != nullptr) {
-    evaluate_local_metaballs(metaballs_of_plain(ground.body, ground.arrays, reaching.lists()), origin, n,
+    evaluate_local_metaballs(plain_metaballs(ground.body, ground.arrays, reaching.lists()), origin, n,
                              x.data(), y.data(), z.data(), distance.data(), gx.data(), gy.data(), gz.data());
   } else {
     evaluate_body(ground.body, ground.arrays, reaching.lists(), n, x.data(), y.data(), z.data(),

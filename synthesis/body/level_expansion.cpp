@@ -14,7 +14,7 @@ namespace {
 
 // The relative rounding of the float evaluation: of one kernel and its slope, with room to spare, and of each
 // addition.
-constexpr double kRoundingOfKernel = 1e-5, kRoundingOfSum = 6e-8;
+constexpr double kKernelEpsilon = 1e-5, kSumEpsilon = 6e-8;
 // Beyond this share of the sum, kernels that end in the box and the constant floor leave no useful bound.
 constexpr double kMostShare = 0.05;
 // The largest exponent by which a weight may grow within the box. The exponential of floats ends at 88.
@@ -134,8 +134,8 @@ LogSum expand_sum(const MetaballParameters<float>& body, std::span<const Metabal
   const double e = curvature / total, length = norm(a);
   take_spreads(n, to_float(a), static_cast<float>(e), r, k.vx.data(), k.vy.data(), k.vz.data(),
                k.curvature.data(), k.spread.data());
-  const double spread_of_constant = length + 0.5 * radius * e;
-  double mean_spread = constant * spread_of_constant;
+  const double constant_spread = length + 0.5 * radius * e;
+  double mean_spread = constant * constant_spread;
   for (std::size_t i = 0; i < spheres.size(); ++i) mean_spread += double{k.value[i]} * k.spread[i];
   mean_spread /= total;
   grow_weights(n, r, k.value.data(), k.spread.data(), k.weight.data());
@@ -150,7 +150,7 @@ LogSum expand_sum(const MetaballParameters<float>& body, std::span<const Metabal
     growth = std::max(growth, radius * spread);
   };
   if (constant > 0.0) {
-    add(constant * portable::exp(radius * spread_of_constant), spread_of_constant, 0.0);
+    add(constant * portable::exp(radius * constant_spread), constant_spread, 0.0);
   }
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (k.value[i] > 0.0f) add(k.weight[i], k.spread[i], k.curvature[i]);
@@ -196,7 +196,7 @@ std::optional<LevelExpansion> expand_level(const MetaballsView& metaballs, const
   const double level = (added.value - subtracted.value) * inverse_m - double{body.log_iso};
   const Vec3d gradient = inverse_m * (added.gradient - subtracted.gradient);
   const double kinds = subtracts ? 2.0 : 1.0;
-  const double of_sums = kRoundingOfKernel + kRoundingOfSum * double(metaballs.spheres.size());
+  const double of_sums = kKernelEpsilon + kSumEpsilon * double(metaballs.spheres.size());
   const double rounding = kinds * (5e-5 + of_sums + 2e-6 * std::fabs(double{body.m_a})) * inverse_m +
                           (1e-6 * farthest + of_sums * radius) * roughness + 1e-6 * std::fabs(level);
   // A kernel that ends in the box changes the gradient by at most its share times the difference of slopes.

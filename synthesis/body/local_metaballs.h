@@ -30,8 +30,8 @@ void evaluate_local_metaballs(const MetaballsView& metaballs, const Vec3d& origi
                               float* gradient_y, float* gradient_z);
 
 // The metaballs of a plain body, from the lists of those that reach a box.
-inline MetaballsView metaballs_of_plain(const BodyTables& body, const ArrayView& arrays,
-                                        const LeafLists& lists) {
+inline MetaballsView plain_metaballs(const BodyTables& body, const ArrayView& arrays,
+                                     const LeafLists& lists) {
   return {arrays[body.leaves][0].metaballs,
           {lists.spheres + lists.first[0], lists.first[1] - lists.first[0]}};
 }

@@ -60,20 +60,20 @@ struct BodyIntervals {
   ASTROLITH_HD bool subtractive() const { return subtracted.count != 0; }
 };
 
-// Bounds the kernels of all spheres. interval_of(sphere, kernel) sets `kernel` and returns whether the sphere
-// reaches the box. Expects subtractive spheres last, and room for all spheres in `kernels`.
-template <typename IntervalOf>
+// Bounds the kernels of all spheres. bound_kernel(sphere, kernel) sets `kernel` and returns whether the
+// sphere reaches the box. Expects subtractive spheres last, and room for all spheres in `kernels`.
+template <typename BoundKernel>
 ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInterval* kernels,
-                                         const IntervalOf& interval_of) {
+                                         const BoundKernel& bound_kernel) {
   BodyIntervals bounds{{kernels, 0, double{kKernelFloor}, double{kKernelFloor}}, {nullptr, 0, 1.0, 1.0}};
   std::uint32_t i = 0;
   KernelInterval kernel;
   for (; i < spheres.count && !spheres[i].subtractive(); ++i) {
-    if (interval_of(spheres[i], kernel)) bounds.added.add(kernel);
+    if (bound_kernel(spheres[i], kernel)) bounds.added.add(kernel);
   }
   bounds.subtracted.kernels = kernels + bounds.added.count;
   for (; i < spheres.count; ++i) {
-    if (interval_of(spheres[i], kernel)) bounds.subtracted.add(kernel);
+    if (bound_kernel(spheres[i], kernel)) bounds.subtracted.add(kernel);
   }
   return bounds;
 }

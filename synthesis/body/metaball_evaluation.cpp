@@ -50,7 +50,7 @@ ASTROLITH_SPHERES_LOOP(add_wyvill, accumulate_compact<Kernel::kWyvill>)
 ASTROLITH_SPHERES_LOOP(add_cauchy, accumulate_compact<Kernel::kCauchy>)
 #undef ASTROLITH_SPHERES_LOOP
 
-auto adder_of(Kernel kernel) {
+auto make_adder(Kernel kernel) {
   switch (kernel) {
     case Kernel::kMetaball:
       return add_metaballs;
@@ -118,7 +118,7 @@ void evaluate_metaballs(const MetaballsView& metaballs, int n, const float* x, c
   const MetaballParameters<float>& body = metaballs.parameters;
   const std::span<const MetaballSphere<float>> adding = metaballs.adding();
   const std::vector<MetaballSphere<float>> subtractive = as_adding(metaballs.subtractive());
-  const auto add = adder_of(body.compact_kernel.kernel);
+  const auto add = make_adder(body.compact_kernel.kernel);
   const auto finish = body.compact_kernel.kernel == Kernel::kGaussian ? finish_gaussians : finish_compact;
   for (int begin = 0; begin < n; begin += kPointsAtOnce) {
     const int size = std::min(kPointsAtOnce, n - begin);

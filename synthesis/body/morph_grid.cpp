@@ -297,7 +297,7 @@ void check_domain(const Nodes& nodes, const std::vector<double>& values) {
 }
 
 // The surface of donor j in the frame of the morph, or the ellipsoid after the last donor.
-Surface surface_of(const Morph& morph, std::size_t j, const std::vector<std::size_t>& numbers) {
+Surface make_surface(const Morph& morph, std::size_t j, const std::vector<std::size_t>& numbers) {
   if (j < morph.donors.size()) return DonorSurface(morph.donors[j], morph.half_axes, numbers);
   return [&morph](const Points& points) { return ellipsoid_levels(morph.half_axes, points); };
 }
@@ -310,7 +310,7 @@ std::vector<double> blended_distances(const Morph& morph, const Nodes& nodes) {
   std::vector<std::vector<double>> s(donors + 1);  // those of the donors, then the ellipsoid's
   parallel_for(0, static_cast<std::int64_t>(s.size()), [&](std::int64_t number) {
     const auto j = static_cast<std::size_t>(number);
-    s[j] = signed_distances(nodes, points, surface_of(morph, j, numbers));
+    s[j] = signed_distances(nodes, points, make_surface(morph, j, numbers));
   });
   double squares = 0.0;
   for (const Donor& donor : morph.donors) squares += donor.share * donor.share;

@@ -137,8 +137,9 @@ struct DistanceRange {
 ASTROLITH_HD inline DistanceRange distances_beyond(const SplineGrid& grid, const Box& box) {
   const Box domain{{grid.low.x, grid.low.y, grid.low.z}, {grid.high.x, grid.high.y, grid.high.z}};
   const Vec3d none{};
-  return {norm(greatest_of(none, greatest_of(box.min - domain.max, domain.min - box.max))) * (1.0 - 1e-5),
-          norm(greatest_of(none, greatest_of(box.max - domain.max, domain.min - box.min))) * (1.0 + 1e-5)};
+  return {
+      norm(component_max(none, component_max(box.min - domain.max, domain.min - box.max))) * (1.0 - 1e-5),
+      norm(component_max(none, component_max(box.max - domain.max, domain.min - box.min))) * (1.0 + 1e-5)};
 }
 
 // Extends an interval by a value.

@@ -14,12 +14,12 @@
 namespace astrolith {
 namespace {
 
-float length_of(const Vec3f& v) { return math::sqrt(dot(v, v)); }
+float norm(const Vec3f& v) { return math::sqrt(dot(v, v)); }
 
 // Moves the points to the surface, to first order and at most `longest` far.
 void move_to_surface(float longest, GroundPoints& row) {
   for (std::size_t i = 0; i < row.size(); ++i) {
-    const float length = length_of(row.gradient(i));
+    const float length = norm(row.gradient(i));
     if (!(length > 1e-18f)) continue;
     const float step = -math::clamp(row.distance[i], -longest, longest) / length;
     row.x[i] = math::fma(step, row.gx[i], row.x[i]);
@@ -88,9 +88,9 @@ class BodyRow {
     move_to_surface(longest, row_);
     evaluate(ground, row_);
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      if (length_of(gradient(i)) > 1e-18f) continue;
+      if (norm(gradient(i)) > 1e-18f) continue;
       set_gradient(i, at_anchors.gradient(i));
-      if (length_of(gradient(i)) > 1e-18f) continue;
+      if (norm(gradient(i)) > 1e-18f) continue;
       set_gradient(i, middle - at_anchors.at(i));
     }
   }
@@ -100,7 +100,7 @@ class BodyRow {
   TangentFrame frame(const ExemplarGround& ground, float longest, std::size_t i) const {
     const TangentFrame bare = tangent_frame(gradient(i));
     if (!ground.below || !serves_surface(ground, longest, i)) return bare;
-    return turned_frame(bare, inward_of_layered(ground, row_.at(i), gradient(i), kSlopeRadius * longest));
+    return turned_frame(bare, layered_inward(ground, row_.at(i), gradient(i), kSlopeRadius * longest));
   }
   std::size_t size() const { return row_.size(); }
 
@@ -192,10 +192,10 @@ std::vector<ExemplarAnchor> anchors_on_plane(const ExemplarLayer& layer, const E
   const ExemplarLattice& l = cells.lattice;
   std::vector<ExemplarAnchor> anchors(static_cast<std::size_t>(cells.anchors));
   const TangentFrame frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const auto wrapped = [](std::int64_t cell, int cells_of_period) {
-    if (cells_of_period == 0) return cell;
-    const std::int64_t rest = cell % cells_of_period;
-    return rest < 0 ? rest + cells_of_period : rest;
+  const auto wrapped = [](std::int64_t cell, int cells_per_period) {
+    if (cells_per_period == 0) return cell;
+    const std::int64_t rest = cell % cells_per_period;
+    return rest < 0 ? rest + cells_per_period : rest;
   };
   for_each_anchor_row(l, [&](int cy, int cz, std::size_t first) {
     for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(l.size[0]); ++i) {

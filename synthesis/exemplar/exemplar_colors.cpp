@@ -16,7 +16,7 @@ constexpr double kFullScale = 65535.0;
 constexpr double kLeastDeviation = 1e-4;
 
 // Red, green and blue of every pixel.
-std::vector<std::uint16_t> rgb_of(const ExemplarImage& image) {
+std::vector<std::uint16_t> to_rgb(const ExemplarImage& image) {
   if (!image.rgb.empty()) return image.rgb;
   std::vector<std::uint16_t> rgb;
   rgb.reserve(3 * image.values.size());
@@ -108,7 +108,7 @@ ExemplarColors exemplar_colors(const ExemplarLayer& layer, const std::string& pl
   if (layer.pixels == nullptr) {
     throw InputError(place + ".image: was not loaded; read the recipe from its file, beside the image");
   }
-  const std::vector<std::uint16_t> rgb = rgb_of(*layer.pixels);
+  const std::vector<std::uint16_t> rgb = to_rgb(*layer.pixels);
   const ColorMoments moments = color_moments(rgb);
   ExemplarColors colors;
   colors.mean = {moments.mean[0] / kFullScale, moments.mean[1] / kFullScale, moments.mean[2] / kFullScale};
@@ -125,7 +125,7 @@ ExemplarColors exemplar_colors(const ExemplarLayer& layer, const std::string& pl
   return colors;
 }
 
-LayerPaint paint_of(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures) {
+LayerPaint make_exemplar_paint(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures) {
   const ExemplarColors colors = exemplar_colors(layer, place);
   LayerPaint paint;
   paint.mean = to_float(colors.mean);

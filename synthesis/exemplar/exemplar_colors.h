@@ -45,6 +45,6 @@ struct LayerPaint {
 };
 
 // What a layer with a colour paints on a body. Its textures are added to `textures`.
-LayerPaint paint_of(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures);
+LayerPaint make_exemplar_paint(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures);
 
 }  // namespace astrolith

@@ -58,7 +58,7 @@ float inward_slope(const FieldBelow& below, const Vec3f& p, const Vec3f& outward
 
 }  // namespace
 
-Vec3f inward_of_layered(const ExemplarGround& ground, const Vec3f& foot, const Vec3f& inward, float radius) {
+Vec3f layered_inward(const ExemplarGround& ground, const Vec3f& foot, const Vec3f& inward, float radius) {
   const FieldBelow& below = ground.below;
   const TangentFrame frame = tangent_frame(inward);
   const Vec3f middle = layered_point(ground, foot, frame.n);

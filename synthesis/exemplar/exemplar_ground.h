@@ -15,7 +15,7 @@ struct ExemplarGround {
 // A vector towards the inside, along the normal of the plane that fits the layered surface best above or
 // below a point near the bare surface. `inward` points towards the inside of the bare body there. The plane
 // fits the field at 16 points over two rings of `radius` and half of it, parallel to the bare tangent plane.
-Vec3f inward_of_layered(const ExemplarGround& ground, const Vec3f& foot, const Vec3f& inward, float radius);
+Vec3f layered_inward(const ExemplarGround& ground, const Vec3f& foot, const Vec3f& inward, float radius);
 
 // A tangent frame of the bare surface, turned by the least angle after which its normal points against
 // `inward`. The normals must be less than half a turn apart.

@@ -127,7 +127,7 @@ PointGroups groups_in_list(const std::vector<std::int32_t>& number, std::size_t 
   return result;
 }
 
-PointGroups groups_of(const std::vector<std::int32_t>& tetrahedra) {
+PointGroups group_points(const std::vector<std::int32_t>& tetrahedra) {
   const std::size_t n = tetrahedra.size();
   std::vector<std::int32_t> number(n);
   const std::vector<std::int32_t> list = listed_tetrahedra(tetrahedra, number);
@@ -222,7 +222,7 @@ void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, const Exe
   find_places(n.lattice, count, p.x(), p.y(), p.z(), places.array(0), places.array(1), places.array(2),
               places.array(3), places.array(4), places.array(5), places.array(6), places.tetrahedra.data());
   sharpen(n.exponent, count, {places.array(3), places.array(4), places.array(5), places.array(6)});
-  const PointGroups groups = groups_of(places.tetrahedra);
+  const PointGroups groups = group_points(places.tetrahedra);
   if (!groups.order.empty()) places = sorted_places(places, groups);
   std::vector<float> sums(static_cast<std::size_t>(count));
   for (std::size_t g = 0; g + 1 < groups.first.size(); ++g) {

@@ -81,7 +81,7 @@ std::vector<GreyLevel> grey_levels(const ExemplarImage& image) {
 struct GreyMoments {
   double mean = 0.0, deviation = 0.0;
 };
-GreyMoments moments_of(const std::vector<GreyLevel>& levels, std::size_t pixels) {
+GreyMoments grey_moments(const std::vector<GreyLevel>& levels, std::size_t pixels) {
   double mean = 0.0, square = 0.0;
   for (const GreyLevel& level : levels) mean += static_cast<double>(level.pixels) * level.value;
   mean /= static_cast<double>(pixels);
@@ -232,7 +232,7 @@ struct GreyShare {
 
 // The distribution function as a polygon. The pixels of a grey value are spread evenly up to the middles
 // between it and its neighbours, since they were rounded to it.
-std::vector<GreyShare> distribution_of(const std::vector<GreyLevel>& levels, std::size_t pixels) {
+std::vector<GreyShare> grey_distribution(const std::vector<GreyLevel>& levels, std::size_t pixels) {
   std::vector<GreyShare> polygon{{levels.front().value, 0.0}};
   std::size_t below = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -264,7 +264,7 @@ std::vector<float> height_table(const std::vector<GreyShare>& distribution, doub
   return heights;
 }
 
-ExemplarTexture texture_of(const Plane& plane, const std::vector<float>& heights, ArrayStore& arrays) {
+ExemplarTexture make_texture(const Plane& plane, const std::vector<float>& heights, ArrayStore& arrays) {
   double largest = 0.0;
   for (const double value : plane.values) largest = std::max(largest, std::fabs(value));
   const double unit = largest / (double{kExemplarZeroCode} - 1.0);
@@ -290,7 +290,7 @@ ExemplarTexture texture_of(const Plane& plane, const std::vector<float>& heights
 double exemplar_height_rms(const ExemplarLayer& layer) {
   if (layer.height_range == 0.0) return layer.height_rms;
   const ExemplarImage& image = *layer.pixels;
-  return std::fabs(layer.height_range) * moments_of(grey_levels(image), image.values.size()).deviation;
+  return std::fabs(layer.height_range) * grey_moments(grey_levels(image), image.values.size()).deviation;
 }
 
 ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::string& place,
@@ -303,12 +303,12 @@ ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::str
   if (levels.size() < 2) {
     throw InputError(place + ".image: \"" + layer.image + "\" has one grey value only; use another image");
   }
-  const GreyMoments moments = moments_of(levels, image.values.size());
+  const GreyMoments moments = grey_moments(levels, image.values.size());
   const Plane plane = gaussianised(image, levels, layer.border == ExemplarBorder::kMirror);
   const double gain = layer.height_range != 0.0 ? layer.height_range : layer.height_rms / moments.deviation;
   const std::vector<float> heights =
-      height_table(distribution_of(levels, image.values.size()), moments.mean, gain);
-  return texture_of(plane, heights, arrays);
+      height_table(grey_distribution(levels, image.values.size()), moments.mean, gain);
+  return make_texture(plane, heights, arrays);
 }
 
 }  // namespace astrolith

@@ -90,7 +90,7 @@ std::array<float, 3> float_parts(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-PlaneExemplarOptions options_of(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+PlaneExemplarOptions make_options(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
   return {drawing.recipe.seed, layer_number(layer.seed, static_cast<int>(drawing.index)), drawing.tileable};
 }
 
@@ -143,14 +143,14 @@ PlaneTexture heights_on_plane(const ExemplarLayer& layer, const PlaneDrawing& dr
   PlaneTexture texture;
   const ExemplarLayer high = with_height(layer, texture);
   texture.values = synthesize_exemplar(high, drawing.place, drawing.width, drawing.height,
-                                       options_of(layer, drawing), drawing.progress);
+                                       make_options(layer, drawing), drawing.progress);
   texture.height_rms = exemplar_height_rms(high);
   return texture;
 }
 
 PlaneTexture colors_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
   return {3, synthesize_exemplar_colors(layer, drawing.place, drawing.width, drawing.height,
-                                        options_of(layer, drawing), drawing.progress)};
+                                        make_options(layer, drawing), drawing.progress)};
 }
 
 }  // namespace astrolith

@@ -95,7 +95,7 @@ void add_to_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
   *numbers[column + 2] += p.z;
 }
 
-Vec3d point_of(const Row& row, std::size_t column) {
+Vec3d row_point(const Row& row, std::size_t column) {
   return {*row.numbers[column], *row.numbers[column + 1], *row.numbers[column + 2]};
 }
 
@@ -128,10 +128,10 @@ Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
   return row;
 }
 
-std::vector<Row> rows_of(const ImplicitField& field, const BareSurface& bare,
-                         const std::optional<PatchCube>& patch, double cell) {
+std::vector<Row> list_rows(const ImplicitField& field, const BareSurface& bare,
+                           const std::optional<PatchCube>& patch, double cell) {
   std::vector<Row> rows;
-  for (const Feature& listed : features_of(field, patch)) {
+  for (const Feature& listed : list_features(field, patch)) {
     rows.push_back(listed.crater != nullptr ? crater_row(listed.layer, *listed.crater, field.height_bound())
                                             : boulder_row(listed.layer, *listed.boulder, bare));
     rows.back().resolved = is_resolved(listed, cell);
@@ -145,7 +145,7 @@ void find_surface_points(const ImplicitField& field, const BareSurface& bare, co
       0, static_cast<std::int64_t>(rows.size()),
       [&](std::int64_t i) {
         Row& row = rows[static_cast<std::size_t>(i)];
-        const Vec3d center = point_of(row, kCenterColumn), normal = bare.normal(center);
+        const Vec3d center = row_point(row, kCenterColumn), normal = bare.normal(center);
         const auto point = nearest_crossing(field, center + row.top * normal, normal, row.reach);
         if (!point) return;
         set_point(row.numbers, kSurfaceColumn, *point);
@@ -166,7 +166,7 @@ void leave_out_hidden_boulders(const ImplicitField& field, const Recipe& recipe,
     row.resolved = row.numbers[kMeshColumn].has_value();
     if (!row.resolved) continue;
     shown.push_back(i);
-    tops.push_back({to_float(point_of(row, kMeshColumn)), {}});
+    tops.push_back({to_float(row_point(row, kMeshColumn)), {}});
   }
   const Vec3d origin = patch ? patch->center : Vec3d{};
   std::vector<VertexLabel> labels(tops.size());
@@ -176,39 +176,39 @@ void leave_out_hidden_boulders(const ImplicitField& field, const Recipe& recipe,
   for (std::size_t k = 0; k < shown.size(); ++k) {
     Row& row = rows[shown[k]];
     const bool stands_out = double{ground[k]} < -kHigh * cell;
-    row.resolved = stands_out && finder.row_at(origin + point_of(row, kMeshColumn), ground[k]) ==
+    row.resolved = stands_out && finder.row_at(origin + row_point(row, kMeshColumn), ground[k]) ==
                                      static_cast<std::int32_t>(shown[k]);
   }
 }
 
-std::string text_of(double value) {
+std::string to_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string csv_of(const std::vector<Row>& rows, const Recipe& recipe) {
+std::string to_csv(const std::vector<Row>& rows, const Recipe& recipe) {
   std::string text = "layer,kind";
   for (const char* column : kNumbers) text += std::string(",") + column;
   text += ",length_unit,resolved";
   for (const Row& row : rows) {
     text += '\n' + std::to_string(row.layer) + ',' + row.kind;
-    for (const auto& number : row.numbers) text += ',' + (number ? text_of(*number) : "");
+    for (const auto& number : row.numbers) text += ',' + (number ? to_text(*number) : "");
     text += ',' + recipe.length_unit + (row.resolved ? ",1" : ",0");
   }
   return text + '\n';
 }
 
-std::string json_of(const std::vector<Row>& rows, const Recipe& recipe, const Vec3d& origin) {
+std::string to_json(const std::vector<Row>& rows, const Recipe& recipe, const Vec3d& origin) {
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
   std::string text = "{\n  \"length_unit\": " + quoted(recipe.length_unit) +
-                     ",\n  \"frame\": " + quoted(recipe.frame) + ",\n  \"origin\": [" + text_of(origin.x) +
-                     ", " + text_of(origin.y) + ", " + text_of(origin.z) + "],\n  \"features\": [";
+                     ",\n  \"frame\": " + quoted(recipe.frame) + ",\n  \"origin\": [" + to_text(origin.x) +
+                     ", " + to_text(origin.y) + ", " + to_text(origin.z) + "],\n  \"features\": [";
   const char* separator = "\n";
   for (const Row& row : rows) {
     text += std::string(separator) + "    {\"layer\": " + std::to_string(row.layer) + ", \"kind\": \"" +
             row.kind + '"';
     for (std::size_t k = 0; k < kNumbers.size(); ++k) {
-      if (row.numbers[k]) text += std::string(", \"") + kNumbers[k] + "\": " + text_of(*row.numbers[k]);
+      if (row.numbers[k]) text += std::string(", \"") + kNumbers[k] + "\": " + to_text(*row.numbers[k]);
     }
     text += row.resolved ? ", \"resolved\": true}" : ", \"resolved\": false}";
     separator = ",\n";
@@ -245,7 +245,7 @@ bool is_resolved(const Feature& landform, double cell) {
   return boulder.axes.y >= kAcross * cell && (1.0 - boulder.burial) * boulder.axes.z >= kHigh * cell;
 }
 
-std::vector<Feature> features_of(const ImplicitField& field, const std::optional<PatchCube>& patch) {
+std::vector<Feature> list_features(const ImplicitField& field, const std::optional<PatchCube>& patch) {
   std::vector<Feature> listed;
   for (const LayerCraters& layer : field.craters()) {
     for (const PlacedCrater& c : layer.craters) {
@@ -276,7 +276,7 @@ void write_feature_list(const ImplicitField& field, const Recipe& recipe,
                         const std::filesystem::path& file) {
   const BareSurface bare(bare_body(recipe));
   const Vec3d origin = patch ? patch->center : Vec3d{};
-  std::vector<Row> rows = rows_of(field, bare, patch, cell);
+  std::vector<Row> rows = list_rows(field, bare, patch, cell);
   find_surface_points(field, bare, origin, rows);
   leave_out_hidden_boulders(field, recipe, patch, cell, rows);
   for (Row& row : rows) {
@@ -284,13 +284,15 @@ void write_feature_list(const ImplicitField& field, const Recipe& recipe,
       add_to_point(row.numbers, column, recipe.origin);
     }
   }
-  write_file(file, file.extension() == ".json" ? json_of(rows, recipe, recipe.origin + origin)
-                                               : csv_of(rows, recipe));
+  write_file(file, file.extension() == ".json" ? to_json(rows, recipe, recipe.origin + origin)
+                                               : to_csv(rows, recipe));
 }
 
 FeatureFinder::FeatureFinder(const ImplicitField& field, const Recipe& recipe,
                              const std::optional<PatchCube>& patch, double cell)
-    : bare_(bare_body(recipe)), origin_(patch ? patch->center : Vec3d{}), listed_(features_of(field, patch)) {
+    : bare_(bare_body(recipe)),
+      origin_(patch ? patch->center : Vec3d{}),
+      listed_(list_features(field, patch)) {
   std::vector<Box> rock_boxes, rim_boxes;
   for (std::size_t row = 0; row < listed_.size(); ++row) {
     const Feature& listed = listed_[row];

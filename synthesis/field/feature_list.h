@@ -31,7 +31,7 @@ bool is_resolved(const Feature& landform, double cell);
 
 // All craters, in the order in which they fell, and then all boulders. For a patch those whose rim or rock
 // reaches into the cube. The result lives as long as the field.
-std::vector<Feature> features_of(const ImplicitField& field, const std::optional<PatchCube>& patch);
+std::vector<Feature> list_features(const ImplicitField& field, const std::optional<PatchCube>& patch);
 
 // `cell` is the side of the mesh's cells, length units. The list has one row for each crater, in the order in
 // which craters fell, and then one for each boulder. For a patch it has those whose rim or rock reaches into

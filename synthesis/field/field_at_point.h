@@ -91,7 +91,7 @@ struct LayerAtPoint {
   template <class Noise>
   ASTROLITH_HD void operator()(const Noise& noise) const {
     if constexpr (Noise::kTraits.has_heights) {
-      join_height(f, layer.join, point.p, height_of(noise), state);
+      join_height(f, layer.join, point.p, noise_height(noise), state);
     } else {
       change_elevation(noise);
     }
@@ -108,8 +108,8 @@ struct LayerAtPoint {
   }
 
   template <class Noise>
-  ASTROLITH_HD float height_of(const Noise& noise) const {
-    const Vec3f at = place_of(noise);
+  ASTROLITH_HD float noise_height(const Noise& noise) const {
+    const Vec3f at = noise_point(noise);
     if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
       return height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, at);
     } else if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
@@ -122,7 +122,7 @@ struct LayerAtPoint {
 
   // The point where a noise is evaluated.
   template <class Noise>
-  ASTROLITH_HD Vec3f place_of(const Noise& noise) const {
+  ASTROLITH_HD Vec3f noise_point(const Noise& noise) const {
     if constexpr (Noise::kTraits.on_surface) {
       return lifted(noise, projected_point(f, point, in_patch()));
     } else {

@@ -22,7 +22,7 @@ struct ModelLists {
     return {reaching.spheres.data() + first, nullptr, reaching.first[leaf + 1] - first};
   }
   Interval bound_spots(const SpotNoise& noise, std::uint32_t layer, const Box& box) const {
-    return bound_heights(noise, model.tables.arrays, box, spots_of(spots, layer));
+    return bound_heights(noise, model.tables.arrays, box, find_spots(spots, layer));
   }
   template <class Visit>
   void for_each_crater(const CraterRelief& relief, const Box& box, const Visit& visit) const {
@@ -128,12 +128,12 @@ std::optional<BlockContent> content_by_expansion(const FieldModel& model, const 
 
 }  // namespace
 
-const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer) {
+const LayerNoise& find_noise(const FieldModel& model, const FieldLayer& layer) {
   return layer.in_patch < 0 ? layer.noise : model.patch_noises[static_cast<std::size_t>(layer.in_patch)];
 }
 
-BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
-                        const Box& box) {
+BlockContent block_content(const FieldModel& model, const ReachingMetaballs& metaballs,
+                           const DrawnSpots& spots, const Box& box) {
   const ModelLists lists{model, metaballs, spots};
   const BoundScratch scratch = scratch_for(model, metaballs);
   const std::optional<BlockContent> content = content_by_expansion(model, lists, box, scratch);
@@ -152,12 +152,12 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const FieldLayer& layer = model.layers[i];
-    const SpotNoise* noise = noise_of(model, layer).get_if<SpotNoise>();
+    const SpotNoise* noise = find_noise(model, layer).get_if<SpotNoise>();
     if (noise == nullptr) continue;
-    const Box at = model.tables.in_frame_of(layer, box);
+    const Box at = model.tables.in_layer_frame(layer, box);
     spots.resize(model.layers.size());
     spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(at, layer.join.displaced),
-                            spots_of(of_larger, i));
+                            find_spots(of_larger, i));
   }
   return spots;
 }

@@ -35,7 +35,7 @@ struct LayerOverBox {
   template <class Noise>
   ASTROLITH_HD Interval operator()(const Noise& noise) const {
     if constexpr (Noise::kTraits.has_heights) {
-      return joined(heights_of(noise));
+      return joined(bound_noise(noise));
     } else {
       return changed_elevation(noise);
     }
@@ -46,23 +46,23 @@ struct LayerOverBox {
   ASTROLITH_HD const LayerJoin& join() const { return layer().join; }
   ASTROLITH_HD Interval changed_elevation(const CraterRelief& relief) const {
     const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
-    return bound_cratered_elevation(relief, f.arrays, for_each, f.in_frame_of(layer(), projected), before);
+    return bound_cratered_elevation(relief, f.arrays, for_each, f.in_layer_frame(layer(), projected), before);
   }
   template <class Noise>
-  ASTROLITH_HD Interval heights_of(const Noise& noise) const {
+  ASTROLITH_HD Interval bound_noise(const Noise& noise) const {
     if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
-      return lists.bound_spots(noise, number, box_of<Noise>());
+      return lists.bound_spots(noise, number, noise_box<Noise>());
     } else {
-      return bound_heights(noise, f.arrays, box_of<Noise>());
+      return bound_heights(noise, f.arrays, noise_box<Noise>());
     }
   }
   // Holds the places where a noise is evaluated for the points of the box, in the coordinates of the noise.
   template <class Noise>
-  ASTROLITH_HD Box box_of() const {
+  ASTROLITH_HD Box noise_box() const {
     if constexpr (Noise::kTraits.on_surface) {
-      return f.in_frame_of(layer(), projected);
+      return f.in_layer_frame(layer(), projected);
     } else {
-      return displaced_layer_box(f.in_frame_of(layer(), box), join().displaced);
+      return displaced_layer_box(f.in_layer_frame(layer(), box), join().displaced);
     }
   }
   ASTROLITH_HD Interval joined(const Interval& heights) const {
@@ -93,8 +93,8 @@ struct BoundScratch {
 
 // The content of a box, without boulders, for a body with operations.
 template <class Lists>
-ASTROLITH_HD BlockContent content_of_combined(const FieldView& f, const Lists& lists, const Box& box,
-                                              const BoundScratch& scratch) {
+ASTROLITH_HD BlockContent combined_content(const FieldView& f, const Lists& lists, const Box& box,
+                                           const BoundScratch& scratch) {
   const double height = f.height_bound * (1.0 + kHeightSlack);
   const Interval distance = bound_distance(f.body, f.arrays, lists, box, height, scratch.kernels);
   const BlockContent content = content_by_distance(distance, {-height, height});
@@ -105,8 +105,8 @@ ASTROLITH_HD BlockContent content_of_combined(const FieldView& f, const Lists& l
 
 // The content of a box, without boulders, for a plain body.
 template <class Lists>
-ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& lists, const Box& box,
-                                           const BoundScratch& scratch) {
+ASTROLITH_HD BlockContent plain_content(const FieldView& f, const Lists& lists, const Box& box,
+                                        const BoundScratch& scratch) {
   const Box at = body_box(f.body, f.arrays, box);
   const MetaballParameters<float>& leaf = f.leaf(0).metaballs;
   const MetaballList spheres = lists.metaballs(0);
@@ -130,7 +130,7 @@ template <class Lists>
 ASTROLITH_HD BlockContent field_content(const FieldView& f, const Lists& lists, const Box& box,
                                         const BoundScratch& scratch) {
   return with_boulders(
-      f.body.plain() ? content_of_plain(f, lists, box, scratch) : content_of_combined(f, lists, box, scratch),
+      f.body.plain() ? plain_content(f, lists, box, scratch) : combined_content(f, lists, box, scratch),
       lists, box);
 }
 

@@ -54,7 +54,7 @@ void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<
     const FieldLayer& layer = model.layers[i];
     keep_undecided(model, boulders, layer.join.remaining_change + band, b, number, value);
     if (b.n == 0) return;
-    b.spots = spots_of(lists.spots, i);
+    b.spots = find_spots(lists.spots, i);
     apply_layer(model, layer, b);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[number[i]] += b.elevation[i];
@@ -80,9 +80,8 @@ void begin_batch(const FieldModel& model, const BatchLists& lists, int n, const 
   if (local != nullptr && plain) {
     displace_locally(model, b);
     const PointArrays p = b.local.mapped.arrays();
-    evaluate_local_metaballs(metaballs_of_plain(f.body, f.arrays, lists.metaballs), local->origin, n, p.x,
-                             p.y, p.z, b.distance.data(), gradient.x.data(), gradient.y.data(),
-                             gradient.z.data());
+    evaluate_local_metaballs(plain_metaballs(f.body, f.arrays, lists.metaballs), local->origin, n, p.x, p.y,
+                             p.z, b.distance.data(), gradient.x.data(), gradient.y.data(), gradient.z.data());
   } else {
     evaluate_body(f.body, f.arrays, lists.metaballs, n, mapped.x.data(), mapped.y.data(), mapped.z.data(),
                   b.distance.data(), gradient.x.data(), gradient.y.data(), gradient.z.data());
@@ -179,7 +178,7 @@ void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, co
   std::copy_n(b.distance.data(), n, value.data());
   show(-1, false);
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    b.spots = spots_of(lists.spots, i);
+    b.spots = find_spots(lists.spots, i);
     apply_layer(model, model.layers[i], b);
     for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) value[k] = b.distance[k] + b.elevation[k];
     show(model.recipe_layers[i], false);
@@ -205,7 +204,7 @@ void paint_batch(const FieldModel& model, const BatchLists& lists, const Surface
   auto craters = paints.craters.begin();
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const FieldLayer& layer = model.layers[i];
-    b.spots = spots_of(lists.spots, i);
+    b.spots = find_spots(lists.spots, i);
     const auto paint = [&](auto& next, const auto end) {
       if (next != end && next->layer == i) paint_layer(model, layer, *next++, b, points);
     };

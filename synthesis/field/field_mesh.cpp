@@ -18,7 +18,7 @@ template EvenStatistics even_mesh(const PatchField&, double, RecordedMesh&, cons
 template ProbeFigures probe_surface<kBlockCells>(const ImplicitField&, const ProbedMesh&, int);
 template ProbeFigures probe_surface<kBlockCells>(const PatchField&, const ProbedMesh&, int);
 
-TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made) {
+TriangleMesh make_coarse_mesh(const ImplicitField& field, int resolution, MeshStatistics* made) {
   MeshCollector collector;
   const MeshStatistics statistics =
       mesh_field<kCoarseBlockCells>(field, field.bounds(), resolution, collector);
@@ -26,8 +26,8 @@ TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStat
   return std::move(collector.mesh);
 }
 
-TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution,
-                            MeshStatistics* made) {
+TriangleMesh make_coarse_mesh(const PatchField& field, double patch_size, int resolution,
+                              MeshStatistics* made) {
   MeshCollector collector;
   const MeshStatistics statistics = mesh_patch<kCoarseBlockCells>(field, patch_size, resolution, collector);
   if (made != nullptr) *made = statistics;

@@ -20,8 +20,8 @@ extern template ProbeFigures probe_surface<kBlockCells>(const ImplicitField&, co
 extern template ProbeFigures probe_surface<kBlockCells>(const PatchField&, const ProbedMesh&, int);
 
 // A coarse mesh of a field, as a place for probes: whole, and of a patch. `made`, if given, gets its counts.
-TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made = nullptr);
-TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution,
-                            MeshStatistics* made = nullptr);
+TriangleMesh make_coarse_mesh(const ImplicitField& field, int resolution, MeshStatistics* made = nullptr);
+TriangleMesh make_coarse_mesh(const PatchField& field, double patch_size, int resolution,
+                              MeshStatistics* made = nullptr);
 
 }  // namespace astrolith

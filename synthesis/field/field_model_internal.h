@@ -90,20 +90,20 @@ float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& 
 FieldBelow field_below(const FieldModel& model, std::size_t layers, const NoiseFrame& frame);
 
 // The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
-const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer);
+const LayerNoise& find_noise(const FieldModel& model, const FieldLayer& layer);
 
 // The spots that reach a box. They are chosen from the spots of a larger box, or drawn where `of_larger` is
 // empty.
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger);
 
 // The spots of layer number `layer`; null where none were drawn.
-inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) {
+inline const SpotImpulses* find_spots(const DrawnSpots& spots, std::size_t layer) {
   return spots.empty() ? nullptr : spots[layer].get();
 }
 
 // Whether F keeps one sign over the box; `metaballs` and `spots` must hold all that reach the box.
-BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
-                        const Box& box);
+BlockContent block_content(const FieldModel& model, const ReachingMetaballs& metaballs,
+                           const DrawnSpots& spots, const Box& box);
 
 // Bounds of the elevations that the layers make over a box, of whose points the projections lie in another
 // one, for a plain body without a warp. `spots` must hold all that reach the box.

@@ -30,13 +30,13 @@ using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNois
                                 CraterRelief, GaborSurfaceNoise, ExemplarNoise, ReliefNoise>;
 
 // Visits a layer's noise: its traits.
-struct TraitsOfNoise {
+struct FindTraits {
   template <class Noise>
   constexpr NoiseTraits operator()(const Noise&) const {
     return Noise::kTraits;
   }
 };
-inline NoiseTraits traits_of(const LayerNoise& noise) { return noise.visit(TraitsOfNoise{}); }
+inline NoiseTraits noise_traits(const LayerNoise& noise) { return noise.visit(FindTraits{}); }
 
 // A layer and how it joins the layers before it. Craters change the elevation by their own rule, so that only
 // the bounds in their `join` are read.
@@ -89,7 +89,7 @@ struct FieldView {
     return layer.in_patch < 0 ? layer.noise : arrays[patch.noises][layer.in_patch];
   }
   // A box of the body's frame in the frame of noise(layer).
-  ASTROLITH_HD Box in_frame_of(const FieldLayer& layer, const Box& box) const {
+  ASTROLITH_HD Box in_layer_frame(const FieldLayer& layer, const Box& box) const {
     return layer.in_patch < 0 ? box : Box{box.min - patch.origin, box.max - patch.origin};
   }
   ASTROLITH_HD const FieldLayer& crater_layer(std::uint32_t list) const {

@@ -26,7 +26,7 @@ ASTROLITH_HD inline bool metaball_reaches(const BodyLeaf& leaf, const MetaballSp
 ASTROLITH_HD inline bool crater_reaches(const FieldView& f, std::uint32_t list, std::uint32_t number,
                                         const Box& projected) {
   return boxes_touch(crater_reach(f.arrays[f.craters(list).craters][number]),
-                     f.in_frame_of(f.crater_layer(list), projected));
+                     f.in_layer_frame(f.crater_layer(list), projected));
 }
 
 // Whether a boulder reaches a block.
@@ -42,7 +42,7 @@ ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box
   const ImpulseList from = f.arrays[f.spot_lists][list];
   const FieldLayer& layer = f.layers[from.layer];
   const SpotNoise& noise = *f.noise(layer).get_if<SpotNoise>();
-  const Box where = displaced_layer_box(f.in_frame_of(layer, box), layer.join.displaced);
+  const Box where = displaced_layer_box(f.in_layer_frame(layer, box), layer.join.displaced);
   for_each_spot(f.arrays[noise.kinds][from.element], f.arrays[noise.thresholds],
                 moved_into(where, noise.low, noise.high), write, share);
 }
@@ -56,8 +56,8 @@ struct FloatBox {
 ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least, const Vec3f& most) {
   // The neighbour of a finite float.
   const auto next_float = [](float v, bool up) {
-    if (v == 0.0f) return math::float_of(up ? 1 : std::int32_t(0x80000001u));
-    return math::float_of(math::bits_of(v) + ((v > 0.0f) == up ? 1 : -1));
+    if (v == 0.0f) return math::from_bits(up ? 1 : std::int32_t(0x80000001u));
+    return math::from_bits(math::to_bits(v) + ((v > 0.0f) == up ? 1 : -1));
   };
   FloatBox out;
   const auto set = [&](int axis, double low, double high, float from, float to) {
@@ -81,7 +81,7 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
   GaborCellSpan cells[3], bricks[3];
   for (int a = 0; a < 3; ++a) {
     cells[a] = gabor_cells_around(band, a, box.low[a], box.high[a]);
-    bricks[a] = {gabor_brick_of(cells[a].first), gabor_brick_of(cells[a].last)};
+    bricks[a] = {containing_gabor_brick(cells[a].first), containing_gabor_brick(cells[a].last)};
   }
   const auto length = [](const GaborCellSpan& span) {
     return static_cast<std::uint64_t>(std::max(span.last - span.first + 1, 0));
@@ -127,7 +127,8 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
   const FieldLayer& layer = f.layers[from.layer];
   const GaborSurfaceNoise& noise = *f.noise(layer).get_if<GaborSurfaceNoise>();
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
-  const FloatBox at = outer_float_box(f.in_frame_of(layer, projected_block(f, box)), noise.low, noise.high);
+  const FloatBox at =
+      outer_float_box(f.in_layer_frame(layer, projected_block(f, box)), noise.low, noise.high);
   const GaborTarget target = gabor_target(band.a, at.center, at.half);
   const auto write_reaching = [&](const GaborImpulse& impulse) {
     if (gabor_reaches(impulse, target)) write(impulse);

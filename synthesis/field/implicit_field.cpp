@@ -13,7 +13,7 @@
 namespace astrolith {
 static_assert(BlockField<ImplicitField>);
 
-BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, spots_, box_); }
+BlockContent FieldBlock::content() const { return block_content(*model_, metaballs_, spots_, box_); }
 
 FieldBlock FieldBlock::restricted_to(const Box& child) const {
   const FieldView& f = model_->tables;
@@ -173,7 +173,7 @@ FieldBlock ImplicitField::gather(const Box& box) const {
 
 std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
   std::vector<GaborCacheUse> uses;
-  for (const GaborBrickCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
+  for (const GaborBrickCache& cache : model_->gabor_caches) uses.push_back(cache_use(cache));
   return uses;
 }
 
@@ -185,7 +185,7 @@ std::vector<double> ImplicitField::gabor_brick_seconds() const {
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const GaborSurfaceNoise& noise = *f.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][lists[i].element];
-    seconds.push_back(GaborBricks(band, ground, model_->gabor_caches[i]).seconds_of_brick());
+    seconds.push_back(GaborBricks(band, ground, model_->gabor_caches[i]).seconds_per_brick());
   }
   return seconds;
 }
@@ -219,7 +219,7 @@ void FieldModel::update() {
   tables.longest_step = static_cast<float>(height_bound);
   tables.steepest = static_cast<float>(body.lipschitz_bound);
   tables.reads_projections = std::any_of(layers.begin(), layers.end(), [](const FieldLayer& layer) {
-    const NoiseTraits traits = traits_of(layer.noise);
+    const NoiseTraits traits = noise_traits(layer.noise);
     return traits.on_surface && traits.bounded_by_box;
   });
   if (patch) tables.patch.origin = patch->center;

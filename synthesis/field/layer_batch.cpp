@@ -83,7 +83,7 @@ PointArrays lifted(const FieldModel& model, const BatchFrame& frame, Batch& b) {
 
 // Where a noise is evaluated for the points, in the frame of local coordinates if `in_patch`.
 template <class Noise>
-PointArrays places_of(const FieldModel& model, const Noise& noise, bool in_patch, Batch& b) {
+PointArrays noise_points(const FieldModel& model, const Noise& noise, bool in_patch, Batch& b) {
   BatchFrame& frame = in_patch ? b.local : b.body;
   if constexpr (Noise::kTraits.on_surface) {
     project(model, b, frame);
@@ -109,7 +109,7 @@ struct LayerHeights {
       if constexpr (Noise::kTraits.local_form) {
         if (!in_patch && b.origin != nullptr && noise.has_local_form()) return evaluate_locally(noise);
       }
-      evaluate(noise, places_of(model, noise, in_patch, b));
+      evaluate(noise, noise_points(model, noise, in_patch, b));
     }
   }
 
@@ -200,7 +200,7 @@ const PatchCraters* craters_in_patch(const FieldModel& model, const CraterRelief
 
 void change_elevation(const FieldModel& model, const CraterRelief& relief, Batch& b) {
   const PatchCraters* local = craters_in_patch(model, relief, b);
-  const PointArrays p = places_of(model, relief, local != nullptr, b);
+  const PointArrays p = noise_points(model, relief, local != nullptr, b);
   apply_craters(local ? local->relief : relief, model.tables.arrays,
                 local ? local->tree : model.crater_trees[relief.list], b.n, p.x, p.y, p.z,
                 b.elevation.data());
@@ -211,9 +211,9 @@ void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const Lay
                      Vec3f* color) {
   std::fill_n(color, b.n, paint.mean);
   const bool in_patch = stands_in_patch(layer, b);
-  ExemplarNoise noise = *(in_patch ? noise_of(model, layer) : layer.noise).get_if<ExemplarNoise>();
+  ExemplarNoise noise = *(in_patch ? find_noise(model, layer) : layer.noise).get_if<ExemplarNoise>();
   if (noise.lattice.anchors.count == 0) return;
-  const PointArrays p = places_of(model, noise, in_patch, b);
+  const PointArrays p = noise_points(model, noise, in_patch, b);
   const ExemplarAnchor* anchors = model.tables.arrays[noise.lattice.anchors];
   for (const PaintChannel& channel : paint.channels) {
     noise.texture = channel.texture;
@@ -267,7 +267,7 @@ void paint_layer(const FieldModel& model, const FieldLayer& layer, const CraterT
                  PaintedPoint* points) {
   const CraterRelief& relief = *layer.noise.get_if<CraterRelief>();
   const PatchCraters* local = craters_in_patch(model, relief, b);
-  const PointArrays p = places_of(model, relief, local != nullptr, b);
+  const PointArrays p = noise_points(model, relief, local != nullptr, b);
   const BoxTree& tree = local ? local->tree : model.crater_trees[relief.list];
   const CraterKernel* craters = model.tables.arrays[(local ? local->relief : relief).craters];
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
@@ -298,7 +298,7 @@ void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
 
 void evaluate_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
   const bool in_patch = stands_in_patch(layer, b);
-  (in_patch ? noise_of(model, layer) : layer.noise).visit(LayerHeights{model, layer, b, in_patch});
+  (in_patch ? find_noise(model, layer) : layer.noise).visit(LayerHeights{model, layer, b, in_patch});
 }
 
 }  // namespace astrolith

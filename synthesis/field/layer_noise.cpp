@@ -4,7 +4,7 @@ namespace astrolith {
 namespace {
 
 template <class Kind>
-LayerMaker maker_of(const Kind& layer, const LayerSource& source, ArrayStore& arrays) {
+LayerMaker make_maker(const Kind& layer, const LayerSource& source, ArrayStore& arrays) {
   if constexpr (Kind::kTraits.on_surface) {
     return [&layer, prepared = prepare(layer, source, arrays), source](const LayerSite& site,
                                                                        ArrayStore& of_site) {
@@ -22,7 +22,7 @@ LayerMaker maker_of(const Kind& layer, const LayerSource& source, ArrayStore& ar
 }
 
 // Gabor noise has nothing that all sites share.
-LayerMaker maker_of(const GaborLayer& layer, const LayerSource& source, ArrayStore&) {
+LayerMaker make_maker(const GaborLayer& layer, const LayerSource& source, ArrayStore&) {
   return [&layer, source](const LayerSite& site, ArrayStore& of_site) {
     return LayerNoise(
         make_noise(layer, source.recipe.seed, source.number, site.frame, site.body_side, of_site));
@@ -41,7 +41,7 @@ LayerMaker layer_maker(const Layer& layer, const LayerSource& source, ArrayStore
   return std::visit(
       [&]<class Kind>(const Kind& l) -> LayerMaker {
         if constexpr (Kind::kTraits.is_noise) {
-          return maker_of(l, source, arrays);
+          return make_maker(l, source, arrays);
         } else {
           return {};
         }
@@ -61,7 +61,7 @@ double reach_below(const Layer& layer) {
       layer);
 }
 
-double height_bound_of(const LayerNoise& noise) {
+double noise_height_bound(const LayerNoise& noise) {
   return noise.visit([]<class Noise>(const Noise& n) {
     if constexpr (Noise::kTraits.has_heights) {
       return n.height_bound;
@@ -71,7 +71,7 @@ double height_bound_of(const LayerNoise& noise) {
   });
 }
 
-NoiseDetail detail_of(const LayerNoise& noise) {
+NoiseDetail noise_detail(const LayerNoise& noise) {
   return noise.visit([]<class Noise>(const Noise& n) {
     if constexpr (Noise::kTraits.has_heights) {
       return n.detail;

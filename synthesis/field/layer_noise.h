@@ -24,10 +24,10 @@ LayerMaker layer_maker(const Layer& layer, const LayerSource& source, ArrayStore
 double reach_below(const Layer& layer);
 
 // A bound of the |height|, length units.
-double height_bound_of(const LayerNoise& noise);
+double noise_height_bound(const LayerNoise& noise);
 
 // How fine the noise is, and what its frame could not hold of it.
-NoiseDetail detail_of(const LayerNoise& noise);
+NoiseDetail noise_detail(const LayerNoise& noise);
 
 // Whether the noise of the body's frame keeps all digits of coordinates local to a patch.
 bool has_local_form(const LayerNoise& noise);

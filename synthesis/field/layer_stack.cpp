@@ -11,12 +11,12 @@
 
 namespace astrolith {
 
-StackState::StackState(const Recipe& of_layers, const std::string& recipe_name, FieldModel& of_body)
-    : recipe(of_layers),
+StackState::StackState(const Recipe& given_recipe, const std::string& recipe_name, FieldModel& given_model)
+    : recipe(given_recipe),
       name(recipe_name),
-      model(of_body),
-      masks(plan_masks(of_layers.layers)),
-      supports(of_body.body.supports) {}
+      model(given_model),
+      masks(plan_masks(given_recipe.layers)),
+      supports(given_model.body.supports) {}
 
 LayerSite StackState::site(const NoiseFrame& frame, std::size_t below) const {
   model.update();
@@ -28,7 +28,7 @@ LayerSite StackState::site(const NoiseFrame& frame, std::size_t below) const {
           std::max({e.x, e.y, e.z}),
           field_below(model, below, frame),
           model.height_bound,
-          [&of_layers = recipe] { return bare_body(of_layers).bounds; }};
+          [&given_recipe = recipe] { return bare_body(given_recipe).bounds; }};
 }
 
 void StackState::update_model() {
@@ -120,7 +120,7 @@ class LayerStack {
   // others does not take too long with the layers so far. Returns the number of the first list.
   std::uint32_t add_lists(const LayerNoise& noise, const LayerMaker& maker) {
     FieldModel& model = stack_.model;
-    const NoiseLists kind = traits_of(noise).lists;
+    const NoiseLists kind = noise_traits(noise).lists;
     const bool spots = kind == NoiseLists::kSpots;
     if (!spots && kind != NoiseLists::kGabor) return 0;
     const auto number = static_cast<std::uint32_t>(model.layers.size());
@@ -156,7 +156,7 @@ class LayerStack {
     throw InputError(fmt::format(
         "{}.{}: heights of up to {:.3g} would fill the space around the body; make them smaller, "
         "all heights together at most {:.3g}",
-        stack_.place_of(*first_too_high_), height_field(layer), stack_.model.height_bound, height_limit_));
+        stack_.layer_path(*first_too_high_), height_field(layer), stack_.model.height_bound, height_limit_));
   }
 
   StackState stack_;

@@ -27,12 +27,12 @@ struct StackState {
   int index = 0;                            // index in the recipe of the layer that is added
   std::map<int, std::size_t> numbers = {};  // number in the model of each layer with heights, by its index
 
-  StackState(const Recipe& of_layers, const std::string& recipe_name, FieldModel& of_body);
+  StackState(const Recipe& given_recipe, const std::string& recipe_name, FieldModel& given_model);
 
   const Layer& layer() const { return recipe.layers[static_cast<std::size_t>(index)]; }
   int masking() const { return masks.masking[static_cast<std::size_t>(index)]; }
-  std::string place() const { return place_of(index); }
-  std::string place_of(int layer) const { return name + ": layers[" + std::to_string(layer) + "]"; }
+  std::string place() const { return layer_path(index); }
+  std::string layer_path(int layer) const { return name + ": layers[" + std::to_string(layer) + "]"; }
 
   // A layer's site in a frame, with the first `below` layers of the model below it. It is valid until the
   // model changes.
@@ -103,7 +103,7 @@ class PatchNoises {
 
   bool too_fine_for_body(const LayerNoise& noise) const;
   double farthest_point(const PatchLayer& layer, double warp) const;
-  double reach_of_later_layers(int index) const;
+  double later_reach(int index) const;
   void add(const PatchLayer& layer, double warp);
   void make_patch_warp();
 
@@ -138,8 +138,8 @@ class StackLandforms {
   Box patch_box() const;
   double widest_boulder() const;
   double height_reach();
-  PlaceWeight weight_of(const Population& drawn);
-  PlaceWeight mask_of_places(const Population& drawn, const std::string& place);
+  PlaceWeight place_weight(const Population& drawn);
+  PlaceWeight place_mask(const Population& drawn, const std::string& place);
   void report_sizes_left_out(const Population& drawn);
   const BareSurface& bare();
   std::vector<Vec3d> unwarped(std::vector<Vec3d> points) const;

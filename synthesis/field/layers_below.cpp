@@ -28,7 +28,7 @@ void undo_warp(const CoordinateWarp& warp, const ArrayView& arrays, int n, Batch
 }
 
 // The warp of a plain body in the coordinates of a frame; null where there is none.
-const CoordinateWarp* warp_of(const FieldModel& model, bool moved) {
+const CoordinateWarp* find_warp(const FieldModel& model, bool moved) {
   const BodyLeaf& first = model.tables.leaf(0);
   if (!model.body.plain() || !first.warped) return nullptr;
   if (!moved) return &first.warp;
@@ -51,7 +51,7 @@ void evaluate_below(const FieldModel& model, std::size_t layers, const NoiseFram
                     const PointArrays& at, float* field) {
   BatchPoints points;
   points.copy(n, at);
-  if (const CoordinateWarp* warp = warp_of(model, frame.moved)) {
+  if (const CoordinateWarp* warp = find_warp(model, frame.moved)) {
     undo_warp(*warp, model.tables.arrays, n, points);
   }
   const BatchLists lists{model.metaballs.lists(), {}};

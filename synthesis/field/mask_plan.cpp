@@ -10,11 +10,11 @@ MaskPlan plan_masks(std::span<const Layer> layers) {
   MaskPlan plan{std::vector<int>(layers.size(), -1), std::vector<int>(layers.size(), -1)};
   std::map<std::string, int> latest;  // the last layer so far of each name
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const LayerMask* mask = mask_of(layers[i]);
+    const LayerMask* mask = find_mask(layers[i]);
     const auto masking = mask != nullptr ? latest.find(mask->layer) : latest.end();
     if (masking != latest.end()) {
       plan.masking[i] = masking->second;
-      const bool reads_kept_heights = use_of(layers[i]) != nullptr;
+      const bool reads_kept_heights = find_use(layers[i]) != nullptr;
       if (reads_kept_heights) plan.last_use[static_cast<std::size_t>(masking->second)] = static_cast<int>(i);
     }
     const std::string& name =

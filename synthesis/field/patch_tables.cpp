@@ -40,7 +40,8 @@ void complete_patch_layers(FieldModel& model) {
     }
     const LayerNoise& noise =
         layer.in_patch < 0 ? layer.noise : noises[static_cast<std::size_t>(layer.in_patch)];
-    std::vector<ImpulseList>& lists = traits_of(noise).lists == NoiseLists::kSpots ? spot_lists : gabor_lists;
+    std::vector<ImpulseList>& lists =
+        noise_traits(noise).lists == NoiseLists::kSpots ? spot_lists : gabor_lists;
     layer.first_list = static_cast<std::uint32_t>(lists.size());
     for (std::uint32_t e = 0; e < num_impulse_lists(noise); ++e) lists.push_back({i, e});
   }
@@ -49,7 +50,7 @@ void complete_patch_layers(FieldModel& model) {
   model.patch_tables.gabor_lists = model.arrays.add(gabor_lists);
 }
 
-std::vector<FieldBoulder> boulders_of_patch(const FieldModel& model) {
+std::vector<FieldBoulder> patch_boulders(const FieldModel& model) {
   std::vector<FieldBoulder> boulders = model.boulders;
   for (std::size_t i = 0; i < model.patch_boulders.size(); ++i) {
     if (!model.patch_boulders[i]) continue;
@@ -64,7 +65,7 @@ std::vector<FieldBoulder> boulders_of_patch(const FieldModel& model) {
 void add_patch_tables(FieldModel& model) {
   complete_patch_layers(model);
   if (model.patch_warp) model.tables.patch.warp = model.arrays.add(std::vector{*model.patch_warp});
-  const ArrayRange<FieldBoulder> boulders = model.arrays.add(boulders_of_patch(model));
+  const ArrayRange<FieldBoulder> boulders = model.arrays.add(patch_boulders(model));
   const ArrayRange<ImpulseList> spot_lists = model.patch_tables.spot_lists,
                                 gabor_lists = model.patch_tables.gabor_lists;
   model.update();

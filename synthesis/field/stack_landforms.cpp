@@ -108,15 +108,15 @@ void StackLandforms::add_patch_boulders(const BoulderLayer& layer, std::vector<P
 // Where the drawn craters of a layer may lie. The base of a crater depends on older ones that cover its
 // centre, so that craters matter somewhat beyond what they cover.
 DrawingPlaces StackLandforms::crater_places(const CraterLayer& layer) {
-  constexpr double kReachOfBases = 4.0;  // extents of the largest crater
+  constexpr double kBaseReach = 4.0;  // extents of the largest crater
   if (!layer.population) return {};
   const Population& drawn = layer.population->drawn;
-  DrawingPlaces places{weight_of(drawn), {}, 0.5, 0.0, {}};
+  DrawingPlaces places{place_weight(drawn), {}, 0.5, 0.0, {}};
   if (!drawn.by_cells) return places;
   report_sizes_left_out(drawn);
   if (!stack_.model.patch) return places;
   const double extent = std::max(layer.simple.extent, layer.complex_from ? layer.complex.extent : 0.0);
-  places.reach = kReachOfBases * 0.5 * extent;
+  places.reach = kBaseReach * 0.5 * extent;
   places.margin = height_reach() + widest_boulder();
   places.region = patch_box();
   return places;
@@ -125,7 +125,7 @@ DrawingPlaces StackLandforms::crater_places(const CraterLayer& layer) {
 DrawingPlaces StackLandforms::boulder_places(const BoulderLayer& layer, const Progress& progress) {
   if (!layer.population) return {};
   const Population& drawn = layer.population->drawn;
-  DrawingPlaces places{weight_of(drawn), {}, drawn_reach(layer), stack_.model.height_bound, progress};
+  DrawingPlaces places{place_weight(drawn), {}, drawn_reach(layer), stack_.model.height_bound, progress};
   if (!drawn.by_cells) return places;
   report_sizes_left_out(drawn);
   if (stack_.model.patch) places.region = patch_box();
@@ -163,13 +163,13 @@ double StackLandforms::height_reach() {
     const Layer& layer = stack_.recipe.layers[static_cast<std::size_t>(i)];
     const auto add = [&]<class Kind>(const Kind& kind) {
       if constexpr (!Kind::kTraits.is_noise) {
-        bound += rise_of(kind);
+        bound += largest_rise(kind);
       } else if (has_height(layer)) {
         ArrayStore discarded;
-        const LayerSource source{stack_.recipe, layer_number(kind.seed, i), stack_.place_of(i)};
+        const LayerSource source{stack_.recipe, layer_number(kind.seed, i), stack_.layer_path(i)};
         const LayerNoise noise =
             layer_maker(layer, source, discarded)(stack_.site(whole, stack_.model.layers.size()), discarded);
-        bound = elevation_bound(kind.use.combination, bound, height_bound_of(noise));
+        bound = elevation_bound(kind.use.combination, bound, noise_height_bound(noise));
       }
     };
     std::visit(add, layer);
@@ -179,14 +179,14 @@ double StackLandforms::height_reach() {
 
 // The weight of the places of a population; empty where it is 1 everywhere. It reads the model as it is
 // when it is called.
-PlaceWeight StackLandforms::weight_of(const Population& drawn) {
+PlaceWeight StackLandforms::place_weight(const Population& drawn) {
   if (!drawn.locality && !drawn.mask) return {};
   stack_.update_model();
   const std::string place = stack_.place() + ".population";
   const auto arrays = std::make_shared<ArrayStore>();
   std::optional<LocalWeight> local;
   if (drawn.locality) local = make_local_weight(*drawn.locality, *stack_.recipe.body, place, *arrays);
-  const PlaceWeight mask = mask_of_places(drawn, place);
+  const PlaceWeight mask = place_mask(drawn, place);
   return [arrays, local, mask](const Vec3d& p) {
     float weight = mask ? mask(p) : 1.0f;
     if (local) weight *= weight_at(*local, arrays->view(), to_float(p));
@@ -195,7 +195,7 @@ PlaceWeight StackLandforms::weight_of(const Population& drawn) {
 }
 
 // The weight by a population's mask; empty where it has none.
-PlaceWeight StackLandforms::mask_of_places(const Population& drawn, const std::string& place) {
+PlaceWeight StackLandforms::place_mask(const Population& drawn, const std::string& place) {
   if (!drawn.mask) return {};
   const auto number = stack_.numbers.find(stack_.masking());
   if (number == stack_.numbers.end()) fail_without_height(*drawn.mask, place);

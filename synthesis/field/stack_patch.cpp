@@ -9,15 +9,15 @@ namespace astrolith {
 // Whether float coordinates of the body's frame are too coarse for a noise in the field's patch.
 bool PatchNoises::too_fine_for_body(const LayerNoise& noise) const {
   if (!stack_.model.patch || !stack_.model.body.plain()) return false;
-  const NoiseDetail detail = detail_of(noise);
+  const NoiseDetail detail = noise_detail(noise);
   if (has_local_form(noise)) return detail.left_out > 0.0;
   return detail.left_out > 0.0 || largest_coordinate(joins_.domain()) > kMostPreciseCells * detail.finest;
 }
 
 double PatchNoises::height_bound(const LayerNoise& noise, const LayerMaker& maker) {
-  const double in_body = height_bound_of(noise);
+  const double in_body = noise_height_bound(noise);
   if (!too_fine_for_body(noise)) {
-    stack_.report_left_out(stack_.index, detail_of(noise));
+    stack_.report_left_out(stack_.index, noise_detail(noise));
     return in_body;
   }
   const std::size_t number = stack_.model.layers.size();
@@ -25,7 +25,7 @@ double PatchNoises::height_bound(const LayerNoise& noise, const LayerMaker& make
   layers_.push_back({number, stack_.index, largest_coordinate(Box{displaced, displaced}), maker});
   ArrayStore discarded;
   const NoiseFrame whole(Box{{}, {}}, stack_.model.patch->center);
-  return std::max(in_body, height_bound_of(maker(stack_.site(whole, number), discarded)));
+  return std::max(in_body, noise_height_bound(maker(stack_.site(whole, number), discarded)));
 }
 
 void PatchNoises::add_all() {
@@ -40,12 +40,12 @@ void PatchNoises::add(const PatchLayer& layer, double warp) {
   const double reach = farthest_point(layer, warp);
   const NoiseFrame frame(widened(Box{{}, {}}, reach), model.patch->center);
   const LayerNoise noise = layer.maker(stack_.site(frame, layer.layer), model.arrays);
-  stack_.report_left_out(layer.index, detail_of(noise));
+  stack_.report_left_out(layer.index, noise_detail(noise));
   model.layers[layer.layer].in_patch = static_cast<std::int32_t>(model.patch_noises.size());
   model.patch_noises.push_back(noise);
   model.has_patch_layers = true;
   model.patch_caches.emplace_back();
-  if (traits_of(noise).lists == NoiseLists::kGabor) {
+  if (noise_traits(noise).lists == NoiseLists::kGabor) {
     model.patch_caches.back().resize(num_impulse_lists(noise));
   }
 }
@@ -54,13 +54,13 @@ void PatchNoises::add(const PatchLayer& layer, double warp) {
 // sides of the centre; noise on the surface is evaluated at their projections.
 double PatchNoises::farthest_point(const PatchLayer& layer, double warp) const {
   const FieldModel& model = stack_.model;
-  const bool on_surface = traits_of(model.layers[layer.layer].noise).on_surface;
+  const bool on_surface = noise_traits(model.layers[layer.layer].noise).on_surface;
   return 2.0 * model.patch->side + (on_surface ? warp + model.height_bound : layer.displaced) +
-         reach_of_later_layers(layer.index);
+         later_reach(layer.index);
 }
 
 // How far beyond the points of a patch the layers above one look at the surface that it makes.
-double PatchNoises::reach_of_later_layers(int index) const {
+double PatchNoises::later_reach(int index) const {
   double reach = 0.0;
   for (const Layer& layer : std::span(stack_.recipe.layers).subspan(static_cast<std::size_t>(index) + 1)) {
     if (has_height(layer) || paints(layer)) reach = std::max(reach, reach_below(layer));

@@ -45,7 +45,7 @@ ASTROLITH_SIMD_CLONES void bound_distances(const LevelExpansion& of, float floor
 }
 
 // Whether a layer depends on the projections of points on the bare surface, which are not found here.
-bool stands_on_body(const FieldLayer& layer) { return traits_of(layer.noise).on_surface; }
+bool stands_on_body(const FieldLayer& layer) { return noise_traits(layer.noise).on_surface; }
 
 // Writes the signs of middle[i] + elevation[i] that are certain if the sum may err by half[i] + rest, else 0.
 ASTROLITH_SIMD_CLONES void decide_signs(int n, const float* __restrict middle, const float* __restrict half,
@@ -195,7 +195,7 @@ class SignFinder {
     for (std::size_t l = 0; l < model_.layers.size() && open.n > 0; ++l) {
       if (stands_on_body(model_.layers[l])) return;
       b.n = open.n;
-      b.spots = spots_of(lists_.spots, l);
+      b.spots = find_spots(lists_.spots, l);
       apply_layer(model_, model_.layers[l], b);
       ++num_evaluated_;
       open.rest = l + 1 < model_.layers.size() ? model_.layers[l + 1].join.remaining_change : 0.0f;

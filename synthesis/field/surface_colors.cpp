@@ -28,7 +28,7 @@ Vec3f each_channel(const Function& function, const Vec3f& v) {
   return {of(v.x), of(v.y), of(v.z)};
 }
 
-Vec3f encoded(const Vec3d& linear) { return each_channel(srgb_of_linear, to_float(linear)); }
+Vec3f encoded(const Vec3d& linear) { return each_channel(linear_to_srgb, to_float(linear)); }
 
 Vec3f logarithms(const Vec3d& factors) {
   return each_channel([](double factor) { return portable::log(factor); }, to_float(factors));
@@ -39,7 +39,7 @@ LayerPaint make_paint(const Layer& layer, const std::string& place, ArrayStore& 
   return std::visit(
       [&](const auto& l) -> LayerPaint {
         if constexpr (requires { l.paints(); }) {
-          return paint_of(l, place, textures);
+          return make_exemplar_paint(l, place, textures);
         } else {
           return {};
         }
@@ -110,7 +110,7 @@ SurfaceColors::SurfaceColors(const Recipe& recipe, const std::string& name, cons
       paints_.images.push_back(make_paint(layer, place, textures_));
       paints_.images.back().layer = number;
     }
-    const LayerUse* const use = use_of(layer);
+    const LayerUse* const use = find_use(layer);
     if (!albedo_ || use == nullptr || !use->albedo) continue;
     paints_.noises.push_back(make_tone(*use->albedo, stated_height_of(layer), scale));
     paints_.noises.back().layer = number;
@@ -148,7 +148,7 @@ Vec3f SurfaceColors::light_at(const PaintedPoint& point, const Vec3f& normal) co
     gain(by->factor, smooth_step(point.elevation, from, 1.0f / (static_cast<float>(by->to) - from)));
   }
   const auto exponential = [](double x) { return portable::exp(x); };
-  const Vec3f linear = each_channel(linear_of_srgb, point.color), by = each_channel(exponential, tone);
+  const Vec3f linear = each_channel(srgb_to_linear, point.color), by = each_channel(exponential, tone);
   return {linear.x * by.x, linear.y * by.y, linear.z * by.z};
 }
 
@@ -178,17 +178,17 @@ void SurfaceColors::paint(const Vec3d& origin, std::span<const MeshVertex> verti
                           std::span<VertexColor> colors) const {
   const auto vertex = [&](std::size_t i) { return vertices[i]; };
   for_each_light(origin, vertices.size(), vertex, [&](std::size_t i, const PaintedPoint& point) {
-    colors[i] = color_bytes(albedo_ ? each_channel(srgb_of_linear, light_at(point, vertices[i].normal))
+    colors[i] = color_bytes(albedo_ ? each_channel(linear_to_srgb, light_at(point, vertices[i].normal))
                                     : point.color);
   });
 }
 
 VertexColor SurfaceColors::for_viewing(const Vec3f& albedo) const {
   const auto scale = static_cast<float>(viewing_light(albedo_->normal) / albedo_->normal);
-  return color_bytes(each_channel(srgb_of_linear, scale * albedo));
+  return color_bytes(each_channel(linear_to_srgb, scale * albedo));
 }
 
-std::vector<VertexColor> SurfaceColors::colors_of(const Vec3d& origin, const TriangleMesh& mesh) const {
+std::vector<VertexColor> SurfaceColors::evaluate_colors(const Vec3d& origin, const TriangleMesh& mesh) const {
   std::vector<MeshVertex> vertices(mesh.vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     vertices[i].position = to_float(mesh.vertices[i]);

@@ -42,7 +42,7 @@ class SurfaceColors {
   void paint(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexColor> colors) const;
 
   // The colours of a whole mesh.
-  std::vector<VertexColor> colors_of(const Vec3d& origin, const TriangleMesh& mesh) const;
+  std::vector<VertexColor> evaluate_colors(const Vec3d& origin, const TriangleMesh& mesh) const;
 
   // Whether the recipe states an albedo.
   bool has_albedo() const { return albedo_.has_value(); }

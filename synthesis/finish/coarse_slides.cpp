@@ -210,8 +210,8 @@ class SmoothSpread {
 };
 
 // The rises of the columns. What they lack of the volume of their cluster is spread too.
-std::vector<double> rises_of_columns(const Ground& ground, const ColumnClusters& clusters,
-                                     const NeighbourLists& neighbours, std::span<const double> rises) {
+std::vector<double> column_rises(const Ground& ground, const ColumnClusters& clusters,
+                                 const NeighbourLists& neighbours, std::span<const double> rises) {
   const SmoothSpread spread(ground, clusters, neighbours, rises);
   std::vector<double> heights(ground.positions.size(), 0.0);
   spread.add(rises, gradients(clusters, neighbours, rises), heights);
@@ -224,8 +224,8 @@ std::vector<double> rises_of_columns(const Ground& ground, const ColumnClusters&
   return heights;
 }
 
-std::vector<double> slides_of_level(const Ground& ground, double slope, double most_sweeps, int margins,
-                                    const std::function<void(int)>& after_sweep) {
+std::vector<double> level_slides(const Ground& ground, double slope, double most_sweeps, int margins,
+                                 const std::function<void(int)>& after_sweep) {
   const auto loose =
       double(std::count_if(ground.area.begin(), ground.area.end(), [](double a) { return a > 0.0; }));
   std::vector<double> none(ground.positions.size(), 0.0);
@@ -235,19 +235,19 @@ std::vector<double> slides_of_level(const Ground& ground, double slope, double m
   const double sweeps = most_sweeps * double(count) / loose;
   if (count < kFewestClusters || double(count) > 0.7 * loose || !(sweeps >= kLeastSweeps)) return none;
   const double aim = margins < kMostMargins ? slope * (1.0 - kMargin) : slope;
-  std::vector<double> rises = slides_of_level(clusters.ground(), aim, sweeps, margins + 1, after_sweep);
+  std::vector<double> rises = level_slides(clusters.ground(), aim, sweeps, margins + 1, after_sweep);
   const NeighbourLists neighbours(count, clusters.pairs);
   const GroundSlides done = slide_ground(ground_edges(clusters.ground(), wide_pairs(count, neighbours), aim),
                                          clusters.area, static_cast<int>(sweeps), after_sweep, rises);
   if (!done.any && std::all_of(rises.begin(), rises.end(), [](double r) { return r == 0.0; })) return none;
-  return rises_of_columns(ground, clusters, neighbours, rises);
+  return column_rises(ground, clusters, neighbours, rises);
 }
 
 }  // namespace
 
 std::vector<double> coarse_slides(const Ground& ground, double slope, double most_sweeps,
                                   const std::function<void(int)>& after_sweep) {
-  return slides_of_level(ground, slope, most_sweeps, 0, after_sweep);
+  return level_slides(ground, slope, most_sweeps, 0, after_sweep);
 }
 
 }  // namespace astrolith

@@ -58,7 +58,7 @@ Recipe relief_alone(const Recipe& recipe, int number) {
 }
 
 // The roughness of a relief over a distance at places that are uniform over the area of the bare body.
-std::vector<double> roughness_of(const Recipe& recipe, int number, double distance) {
+std::vector<double> sample_roughness(const Recipe& recipe, int number, double distance) {
   const ImplicitField field(relief_alone(recipe, number));
   const BareSurface surface(bare_body(recipe));
   CounterRandom random(recipe.seed);
@@ -82,7 +82,7 @@ constexpr KnownLandforms kItokawa[] = {
     {.least = 0.0,
      .greatest = kAnySize,
      .reference = 5.0,
-     .number_of_reference = 949.0,
+     .reference_count = 949.0,
      .exponent = 3.05,
      .measured_from = 5.0,
      .source = "373 of 5 m on 0.393 km^2, Michikami et al. 2008; Michikami and Hagermann 2021"}};
@@ -93,7 +93,7 @@ constexpr KnownLandforms kBennu[] = {{.craters = true,
                                       .least = 2.5,
                                       .greatest = 10.0,
                                       .reference = 10.0,
-                                      .number_of_reference = 144.0,
+                                      .reference_count = 144.0,
                                       .exponent = 1.93,
                                       .depth = 0.13,
                                       .depth_deviation = 0.31,
@@ -103,7 +103,7 @@ constexpr KnownLandforms kBennu[] = {{.craters = true,
                                       .least = 10.0,
                                       .greatest = kAnySize,
                                       .reference = 10.0,
-                                      .number_of_reference = 144.0,
+                                      .reference_count = 144.0,
                                       .exponent = 1.93,
                                       .depth = 0.10,
                                       .depth_deviation = 0.3,
@@ -112,7 +112,7 @@ constexpr KnownLandforms kBennu[] = {{.craters = true,
                                      {.least = 0.0,
                                       .greatest = kAnySize,
                                       .reference = 5.0,
-                                      .number_of_reference = 1383.0,
+                                      .reference_count = 1383.0,
                                       .exponent = 2.9,
                                       .measured_from = 5.0,
                                       .source = "Pajola et al. 2024, over Itokawa's; Tricarico 2021"}};
@@ -124,7 +124,7 @@ constexpr KnownLandforms kEros[] = {
      .least = 10.0,
      .greatest = 100.0,
      .reference = 20.0,
-     .number_of_reference = 40.0,
+     .reference_count = 40.0,
      .exponent = 1.43,
      .depth = 0.13,
      .depth_deviation = 0.3,
@@ -133,7 +133,7 @@ constexpr KnownLandforms kEros[] = {
     {.least = 0.0,
      .greatest = kAnySize,
      .reference = 15.0,
-     .number_of_reference = 6.01,
+     .reference_count = 6.01,
      .exponent = 3.25,
      .measured_from = 5.0,
      .source = "6760 of 15 m on 1124 km^2, Thomas et al. 2001; Michikami and Hagermann 2021"}};
@@ -141,7 +141,7 @@ constexpr KnownLandforms kEros[] = {
 constexpr KnownLandforms kRyugu[] = {{.least = 0.0,
                                       .greatest = kAnySize,
                                       .reference = 5.0,
-                                      .number_of_reference = 1630.0,
+                                      .reference_count = 1630.0,
                                       .exponent = 2.65,
                                       .measured_from = 5.0,
                                       .source = "4400 of 5 m on 2.7 km^2, Michikami et al. 2019"}};
@@ -153,14 +153,14 @@ constexpr KnownLandforms kDimorphos[] = {
     {.least = 5.0,
      .greatest = kAnySize,
      .reference = 5.0,
-     .number_of_reference = 4840.0,
+     .reference_count = 4840.0,
      .exponent = 3.4,
      .measured_from = 5.0,
      .source = "Pajola et al. 2024, over Itokawa's; the exponent is assumed"},
     {.least = 0.0,
      .greatest = 5.0,
      .reference = 5.0,
-     .number_of_reference = 4840.0,
+     .reference_count = 4840.0,
      .weibull = WeibullSizes{0.004170687, 0.3293115},
      .measured_from = 1.0,
      .source = "Weibull's law through the densities of 5 m and 1 m, Pajola et al. 2024"}};
@@ -190,12 +190,12 @@ const KnownBody& body_named(const std::string& name) {
 }
 
 double meters_per_unit(const Recipe& recipe, const std::string& name) {
-  if (recipe.length_unit == "m" || recipe.length_unit == "km") return metres_of(recipe.length_unit);
+  if (recipe.length_unit == "m" || recipe.length_unit == "km") return metres_per_unit(recipe.length_unit);
   throw InputError(name + ": length_unit: \"" + recipe.length_unit +
                    "\" has no physical scale, which known bodies need; state lengths in m or km");
 }
 
-Population population_of_sizes(const KnownLandforms& known, double least, double greatest, double meters) {
+Population make_population(const KnownLandforms& known, double least, double greatest, double meters) {
   Population population;
   const double number = known_number(known, meters * least) - known_number(known, meters * greatest);
   population.density = round_to_seven_digits(number * 1e-6 * meters * meters);
@@ -206,7 +206,7 @@ Population population_of_sizes(const KnownLandforms& known, double least, double
   return population;
 }
 
-Layer layer_of(const KnownLandforms& known, const Population& population, int seed) {
+Layer make_layer(const KnownLandforms& known, const Population& population, int seed) {
   if (!known.craters) {
     BoulderLayer layer;
     layer.name = "finish boulders";
@@ -247,13 +247,13 @@ class Finishing {
 
   void add(const KnownLandforms& known, double least, double greatest, bool by_cells) {
     if (!(least < 0.999 * greatest)) return;
-    Population population = population_of_sizes(known, least, greatest, meters_);
+    Population population = make_population(known, least, greatest, meters_);
     population.by_cells = by_cells;
     const double density = *population.density;
     if (!known.craters && rough_) spare_smooth_ground(population);
     const int place = static_cast<int>(finish_.recipe.layers.size());
     finish_.recipe.layers.push_back(
-        layer_of(known, population, kFirstSeed + static_cast<int>(finish_.layers.size())));
+        make_layer(known, population, kFirstSeed + static_cast<int>(finish_.layers.size())));
     finish_.layers.push_back({place, known, population.least_diameter, population.greatest_diameter, density,
                               known.measured_from / meters_});
   }
@@ -280,7 +280,7 @@ std::optional<RoughGround> rough_ground(Recipe& recipe) {
   // A mask means the last layer of a name.
   if (!relief.name.empty() && find_layer(recipe.layers, relief.name) != number) return {};
   const double distance = round_to_seven_digits(relief.donor_scale * relief.spacing);
-  std::vector<double> roughness = roughness_of(recipe, number, distance);
+  std::vector<double> roughness = sample_roughness(recipe, number, distance);
   if (roughness.empty()) return {};
   std::sort(roughness.begin(), roughness.end());
   const auto quantile = [&](double share) {
@@ -302,18 +302,19 @@ std::span<const KnownBody> known_bodies() { return kBodies; }
 
 double known_number(const KnownLandforms& known, double diameter) {
   if (!known.weibull) {
-    return known.number_of_reference * portable::pow(diameter / known.reference, -known.exponent);
+    return known.reference_count * portable::pow(diameter / known.reference, -known.exponent);
   }
   const auto exponent = [&](double d) {
     return portable::pow(d / known.weibull->scale, known.weibull->shape);
   };
-  return known.number_of_reference * portable::exp(exponent(known.reference) - exponent(diameter));
+  return known.reference_count * portable::exp(exponent(known.reference) - exponent(diameter));
 }
 
 double finest_size(const Recipe& recipe) {
   double landform = kAnySize, metaball = kAnySize;
   for (const Layer& layer : recipe.layers) {
-    if (const Population* drawn = population_of(layer)) landform = std::min(landform, drawn->least_diameter);
+    if (const Population* drawn = find_population(layer))
+      landform = std::min(landform, drawn->least_diameter);
     std::visit(
         [&]<class Kind>(const Kind& l) {
           if constexpr (!Kind::kTraits.is_noise) landform = std::min(landform, l.least_listed());

@@ -30,14 +30,14 @@ struct RoughGround {
 std::optional<RoughGround> rough_ground(Recipe& recipe);
 
 // Landforms of one kind on a known body, between two sizes. The number of at least D on a square kilometre is
-//   N(D) = number_of_reference (D / reference)^-exponent,   or
-//   N(D) = number_of_reference exp((reference / scale)^shape - (D / scale)^shape)   with `weibull`.
+//   N(D) = reference_count (D / reference)^-exponent,   or
+//   N(D) = reference_count exp((reference / scale)^shape - (D / scale)^shape)   with `weibull`.
 struct KnownLandforms {
   bool craters = false;  // or boulders
   double least = 0.0;    // metres; smaller ones of the kind are too rare to be drawn, or follow another law
   double greatest = 0.0;
-  double reference = 1.0;            // metres
-  double number_of_reference = 0.0;  // of that size and more, per square kilometre
+  double reference = 1.0;        // metres
+  double reference_count = 0.0;  // of that size and more, per square kilometre
   double exponent = 0.0;
   std::optional<WeibullSizes> weibull = std::nullopt;  // metres
   double depth = 0.0, depth_deviation = 0.0;           // craters: over diameter, and over the mean depth

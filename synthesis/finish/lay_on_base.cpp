@@ -32,7 +32,7 @@ double unit_ratio(const Recipe& details, const std::string& details_name, const 
       "\"; fit the photo again with --mm-per-px, or state length_unit \"m\" or \"km\" and the lengths in it");
 }
 
-const ReliefLayer* relief_of(const Recipe& recipe) {
+const ReliefLayer* find_relief(const Recipe& recipe) {
   for (const Layer& layer : recipe.layers) {
     if (const ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) return relief;
   }
@@ -40,7 +40,7 @@ const ReliefLayer* relief_of(const Recipe& recipe) {
 }
 
 double measured_edge(const Recipe& recipe, const std::string& name) {
-  const ReliefLayer* relief = relief_of(recipe);
+  const ReliefLayer* relief = find_relief(recipe);
   if (relief != nullptr) return relief->donor_scale * relief->edge_length();
   throw InputError(name +
                    ": layers: hold no relief, whose model has edges; take lengths by \"body\" or \"units\"");
@@ -67,7 +67,7 @@ bool is_unnamed_relief(const Layer& layer) {
 
 }  // namespace
 
-BaseLengths base_lengths_of(std::string_view word) {
+BaseLengths parse_base_lengths(std::string_view word) {
   if (word == "units") return BaseLengths::kUnits;
   if (word == "body") return BaseLengths::kBody;
   if (word == "edges") return BaseLengths::kEdges;
@@ -85,7 +85,7 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   }
   const double ratio = length_ratio(details, details_name, base, base_name, lengths);
   Recipe result = base;
-  if (relief_of(details) != nullptr) std::erase_if(result.layers, is_unnamed_relief);
+  if (find_relief(details) != nullptr) std::erase_if(result.layers, is_unnamed_relief);
   for (const Layer& layer : details.layers) {
     result.layers.push_back(rescaled(details.body ? drawn_from(*details.body, layer) : layer, ratio));
   }
@@ -104,7 +104,7 @@ Layer drawn_from(const MetaballBody& measured, const Layer& layer) {
 Layer rescaled(const Layer& layer, double ratio) {
   Layer result = layer;
   std::visit([ratio](auto& l) { l.rescale(ratio); }, result);
-  LayerUse* use = use_of(result);
+  LayerUse* use = find_use(result);
   if (use == nullptr) return result;
   if (use->locality) use->locality->width *= ratio;
   if (use->mask) use->mask->rescale(ratio);

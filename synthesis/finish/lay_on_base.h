@@ -16,7 +16,7 @@ namespace astrolith {
 // A longest side is that of the bounding box of the body without layers, as a mesh of 64 cells shows it.
 enum class BaseLengths { kUnits, kBody, kEdges };
 // Throws InputError for other words than "units", "body" and "edges".
-BaseLengths base_lengths_of(std::string_view word);
+BaseLengths parse_base_lengths(std::string_view word);
 
 // The base recipe with the layers of `details` after its own layers. Seed and frame are those of the base. A
 // body in `details` is that from which the heights of reliefs are drawn; a relief takes the place of unnamed

@@ -72,7 +72,7 @@ std::size_t choose(const std::vector<double>& weights, CounterRandom& random) {
 }
 
 // A deviate of the gamma distribution of shape 3/2: the sum of those of 1 and 1/2.
-double gamma_of_three_halves(CounterRandom& random) {
+double draw_gamma_three_halves(CounterRandom& random) {
   const double n = random.normal();
   return -portable::log(1.0 - random.uniform()) + 0.5 * n * n;
 }
@@ -165,7 +165,7 @@ class PopulationDraw {
       const std::optional<std::size_t> near = donors.empty() ? near_body() : std::nullopt;
       const std::size_t body = near ? *near : choose(weights, random);
       weights[body] = 0.0;
-      donors.push_back({body, gamma_of_three_halves(random)});
+      donors.push_back({body, draw_gamma_three_halves(random)});
     }
     double total = 0.0;
     for (const DonorShare& donor : donors) total += donor.share;
@@ -242,7 +242,7 @@ class PopulationDraw {
     bare.body = body;
     TriangleMesh mesh;
     try {
-      mesh = coarse_mesh_of(ImplicitField(bare), kCheckCells);
+      mesh = make_coarse_mesh(ImplicitField(bare), kCheckCells);
     } catch (const InputError&) {
       return false;  // beyond the domain of its grid
     }

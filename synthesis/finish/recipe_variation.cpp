@@ -39,9 +39,12 @@ struct Original {
   std::int64_t pieces;
 
   explicit Original(TriangleMesh own)
-      : mesh(std::move(own)), tree(mesh), diagonal(bounds_of(mesh).diagonal()), pieces(count_pieces(mesh)) {}
+      : mesh(std::move(own)),
+        tree(mesh),
+        diagonal(bounding_box(mesh).diagonal()),
+        pieces(count_pieces(mesh)) {}
 
-  static Box bounds_of(const TriangleMesh& mesh) {
+  static Box bounding_box(const TriangleMesh& mesh) {
     Box box;
     for (const Vec3d& p : mesh.vertices) box.extend(p);
     return box;
@@ -260,7 +263,7 @@ double vary(Layer& layer, double strength, CounterRandom random) {
       layer);
 }
 
-const std::string& name_of(const Layer& layer) {
+const std::string& layer_name(const Layer& layer) {
   return std::visit([](const auto& l) -> const std::string& { return l.name; }, layer);
 }
 
@@ -269,13 +272,13 @@ const std::string& name_of(const Layer& layer) {
 // holds the factor of each layer's heights.
 void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layers) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    if (LayerUse* use = use_of(layers[i])) {
+    if (LayerUse* use = find_use(layers[i])) {
       use->combination.width = round_to_seven_digits(use->combination.width * growth[i]);
     }
-    LayerMask* mask = mask_of(layers[i]);
+    LayerMask* mask = find_mask(layers[i]);
     if (mask == nullptr) continue;
     std::size_t asked = i;
-    while (asked > 0 && name_of(layers[asked - 1]) != mask->layer) --asked;
+    while (asked > 0 && layer_name(layers[asked - 1]) != mask->layer) --asked;
     if (asked == 0) continue;
     mask->from = round_to_seven_digits(mask->from * growth[asked - 1]);
     mask->to = round_to_seven_digits(mask->to * growth[asked - 1]);

@@ -9,7 +9,7 @@ std::array<float, 3> channels(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-TextureOptions options_of(const PlaneDrawing& drawing) {
+TextureOptions make_options(const PlaneDrawing& drawing) {
   if (!drawing.tileable) return {drawing.recipe.seed};
   return {drawing.recipe.seed, 0, drawing.width, drawing.height};
 }
@@ -49,16 +49,16 @@ PlaneTexture heights_on_plane(const GaborLayer& layer, const PlaneDrawing& drawi
   const GaborLayer high = with_height(layer, texture);
   texture.height_rms = high.height_rms;
   texture.values =
-      synthesize_texture(high, drawing.width, drawing.height, options_of(drawing), drawing.progress);
+      synthesize_texture(high, drawing.width, drawing.height, make_options(drawing), drawing.progress);
   return texture;
 }
 
 PlaneTexture colors_on_plane(const GaborLayer&, const PlaneDrawing& drawing) {
   const std::vector<GaborLayer> layers = colored_layers(drawing.recipe);
-  return {
-      3,
-      synthesize_color_texture(layers, drawing.width, drawing.height, options_of(drawing), drawing.progress),
-      layers.size()};
+  return {3,
+          synthesize_color_texture(layers, drawing.width, drawing.height, make_options(drawing),
+                                   drawing.progress),
+          layers.size()};
 }
 
 }  // namespace astrolith

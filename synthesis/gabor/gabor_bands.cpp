@@ -14,7 +14,7 @@ double kernel_bandwidth(int bandwidth) {
   return std::ldexp(std::sqrt(3.14159265358979324 / (2.0 * portable::log(2.0))), -bandwidth);
 }
 
-GaborBand band_of(int bandwidth, const std::vector<GaborLobe>& lobes, double total_variance) {
+GaborBand make_band(int bandwidth, const std::vector<GaborLobe>& lobes, double total_variance) {
   GaborBand band;
   band.bandwidth = bandwidth;
   band.a = kernel_bandwidth(bandwidth);
@@ -47,7 +47,7 @@ std::vector<GaborBand> gabor_bands(const GaborLayer& layer) {
   }
   std::vector<GaborBand> bands;
   for (const auto& [bandwidth, lobes] : by_bandwidth) {
-    bands.push_back(band_of(bandwidth, lobes, total_variance));
+    bands.push_back(make_band(bandwidth, lobes, total_variance));
   }
   return bands;
 }

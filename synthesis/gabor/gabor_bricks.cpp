@@ -12,13 +12,13 @@ namespace {
 constexpr auto kMostShardBytes = static_cast<std::size_t>(kMostCacheBytes / GaborBrickCache::kShards);
 
 // The key of a brick. Indices are below 2^20 in magnitude, since cells are counted from the frame's origin.
-std::uint64_t key_of(const std::array<int, 3>& index) {
+std::uint64_t pack_index(const std::array<int, 3>& index) {
   std::uint64_t key = 0;
   for (const int i : index) key = key << 21 | (static_cast<std::uint32_t>(i) & 0x1fffffu);
   return key;
 }
 
-std::array<int, 3> index_of(std::uint64_t key) {
+std::array<int, 3> unpack_index(std::uint64_t key) {
   std::array<int, 3> index;
   for (int i = 2; i >= 0; --i, key >>= 21) {
     const auto bits = static_cast<std::int32_t>(key & 0x1fffffu);
@@ -27,14 +27,14 @@ std::array<int, 3> index_of(std::uint64_t key) {
   return index;
 }
 
-std::size_t bytes_of(const GaborBrick& brick) {
+std::size_t count_bytes(const GaborBrick& brick) {
   constexpr std::size_t kBookkeeping = 160;  // of the map, the queue, the shared pointer and the allocator
   return kBookkeeping + sizeof(brick) + brick.chunks.capacity() * sizeof(ImpulseChunk);
 }
 
 }  // namespace
 
-GaborCacheUse use_of(const GaborBrickCache& cache) {
+GaborCacheUse cache_use(const GaborBrickCache& cache) {
   GaborCacheUse use;
   for (GaborBrickCache::Shard& shard : *cache.shards) {
     const std::lock_guard lock(shard.mutex);
@@ -46,7 +46,7 @@ GaborCacheUse use_of(const GaborBrickCache& cache) {
 }
 
 std::shared_ptr<const GaborBrick> GaborBricks::brick(const std::array<int, 3>& index) const {
-  const std::uint64_t key = key_of(index);
+  const std::uint64_t key = pack_index(index);
   GaborBrickCache::Shard& shard =
       (*cache_.shards)[hash_cell(0, index[0], index[1], index[2]) % GaborBrickCache::kShards];
   {
@@ -59,24 +59,24 @@ std::shared_ptr<const GaborBrick> GaborBricks::brick(const std::array<int, 3>& i
   const auto [place, is_new] = shard.bricks.emplace(key, made);
   if (!is_new) return place->second;  // another thread was faster
   shard.oldest_first.push_back(key);
-  shard.bytes += bytes_of(*made);
+  shard.bytes += count_bytes(*made);
   ++shard.drawn;
-  shard.drawn_bytes += static_cast<std::int64_t>(bytes_of(*made));
+  shard.drawn_bytes += static_cast<std::int64_t>(count_bytes(*made));
   while (shard.bytes > kMostShardBytes && shard.oldest_first.size() > 1) {
     const auto oldest = shard.bricks.find(shard.oldest_first.front());
-    shard.bytes -= bytes_of(*oldest->second);
+    shard.bytes -= count_bytes(*oldest->second);
     shard.bricks.erase(oldest);
     shard.oldest_first.pop_front();
   }
   return made;
 }
 
-double GaborBricks::seconds_of_brick() const {
-  constexpr std::size_t kMostOfShard = 6;
+double GaborBricks::seconds_per_brick() const {
+  constexpr std::size_t kMostInShard = 6;
   std::vector<std::uint64_t> keys;
   for (GaborBrickCache::Shard& shard : *cache_.shards) {
     const std::lock_guard lock(shard.mutex);
-    for (std::size_t i = 0; i < std::min(kMostOfShard, shard.oldest_first.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMostInShard, shard.oldest_first.size()); ++i)
       keys.push_back(shard.oldest_first[i]);
   }
   if (keys.empty()) return 0.0;
@@ -84,7 +84,7 @@ double GaborBricks::seconds_of_brick() const {
   {
     const GaborBrickCache empty;
     const GaborBricks again(band_, ground_, empty);
-    for (const std::uint64_t key : keys) again.brick(index_of(key));
+    for (const std::uint64_t key : keys) again.brick(unpack_index(key));
   }
   return clock.seconds() / double(keys.size());
 }

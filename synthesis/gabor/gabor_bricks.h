@@ -42,7 +42,7 @@ struct GaborCacheUse {
   double drawn = 0.0;        // number of bricks that were ever kept
   double drawn_bytes = 0.0;  // memory of all of these
 };
-GaborCacheUse use_of(const GaborBrickCache& cache);
+GaborCacheUse cache_use(const GaborBrickCache& cache);
 // The most memory of a cache, bytes.
 inline constexpr double kMostCacheBytes = double(GaborBrickCache::kShards) * (1 << 19);
 
@@ -61,7 +61,7 @@ class GaborBricks {
 
   // Seconds of one processor to draw a brick, keep it and let it go, from some of those in the cache, which
   // are drawn again. 0 where the cache is empty.
-  double seconds_of_brick() const;
+  double seconds_per_brick() const;
 
  private:
   std::shared_ptr<const GaborBrick> draw(const std::array<int, 3>& index) const;

@@ -98,8 +98,8 @@ std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const BodyGround& 
     for (const ImpulsePlaces& p : places) {
       if (math::abs(p.above[i]) > band.farthest) continue;
       impulses.push_back(gabor_impulse(band.a, {p.x[i], p.y[i], p.z[i]}, near.frame[i],
-                                       lobe_of_bits(lobes, band.lobes.count, p.bits[i]),
-                                       phase_of_bits(p.bits[i])));
+                                       pick_lobe(lobes, band.lobes.count, p.bits[i]),
+                                       bits_to_phase(p.bits[i])));
     }
   }
   return impulses;

@@ -170,7 +170,7 @@ ASTROLITH_SIMD_CLONES void slopes_at_point(const ImpulseChunk& chunk, float scal
 
 // Adds the kernels one after another, in the order of a loop over impulses. Zeros do not change the sum. They
 // are removed first, since each addition waits for the one before.
-ASTROLITH_SIMD_CLONES float sum_of(const float* kernel, float amplitude, float sum) {
+ASTROLITH_SIMD_CLONES float add_in_order(const float* kernel, float amplitude, float sum) {
   std::array<float, kLanes> nonzero;
   std::size_t count = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -217,7 +217,7 @@ std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, do
   return chunks;
 }
 
-GaborTarget target_of(const PointBox& box, float a) {
+GaborTarget make_target(const PointBox& box, float a) {
   std::array<float, 3> center, half;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     center[axis] = 0.5f * (box.low[axis] + box.high[axis]);
@@ -243,11 +243,11 @@ void add_at_point(std::span<const ImpulseChunk> chunks, float a, float amplitude
       values_at_point(chunk, scale, x, y, z, value.data());
     } else {
       slopes_at_point(chunk, scale, x, y, z, value.data(), sx.data(), sy.data(), sz.data());
-      *sums.slope_x = sum_of(sx.data(), amplitude, *sums.slope_x);
-      *sums.slope_y = sum_of(sy.data(), amplitude, *sums.slope_y);
-      *sums.slope_z = sum_of(sz.data(), amplitude, *sums.slope_z);
+      *sums.slope_x = add_in_order(sx.data(), amplitude, *sums.slope_x);
+      *sums.slope_y = add_in_order(sy.data(), amplitude, *sums.slope_y);
+      *sums.slope_z = add_in_order(sz.data(), amplitude, *sums.slope_z);
     }
-    *sums.height = sum_of(value.data(), amplitude, *sums.height);
+    *sums.height = add_in_order(value.data(), amplitude, *sums.height);
   }
 }
 

@@ -44,7 +44,7 @@ inline bool overlap(const PointBox& box, const std::array<float, 3>& low, const 
 }
 
 // The target that holds the points of a box.
-GaborTarget target_of(const PointBox& box, float a);
+GaborTarget make_target(const PointBox& box, float a);
 
 // Up to sixteen groups of points. Each group lies in a box about its centre, and within a radius of it.
 struct GroupBoxes {

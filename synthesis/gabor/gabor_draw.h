@@ -86,11 +86,11 @@ ASTROLITH_HD inline GaborImpulse gabor_impulse(float a, const Vec3f& p, const Ta
 }
 
 // The lobe and the phase of an impulse: sixteen bits of `bits` each.
-ASTROLITH_HD inline const GaborLobeShare& lobe_of_bits(const GaborLobeShare* lobes, std::uint32_t num_lobes,
-                                                       std::uint32_t bits) {
+ASTROLITH_HD inline const GaborLobeShare& pick_lobe(const GaborLobeShare* lobes, std::uint32_t num_lobes,
+                                                    std::uint32_t bits) {
   return drawn_lobe(lobes, num_lobes, static_cast<float>(bits >> 16) * 0x1p-16f);
 }
-ASTROLITH_HD inline float phase_of_bits(std::uint32_t bits) {
+ASTROLITH_HD inline float bits_to_phase(std::uint32_t bits) {
   return static_cast<float>(bits & 0xffffu) * 0x1p-16f;
 }
 
@@ -120,7 +120,7 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
     const float above = height_in_gabor_cell(height, frame.n.x, frame.n.y, frame.n.z, center, p);
     if (math::abs(above) > band.farthest) continue;
     const std::uint32_t bits = hash_append(hash, 0);
-    visit(gabor_impulse(band.a, p, frame, lobe_of_bits(lobes, num_lobes, bits), phase_of_bits(bits)));
+    visit(gabor_impulse(band.a, p, frame, pick_lobe(lobes, num_lobes, bits), bits_to_phase(bits)));
   }
 }
 
@@ -194,7 +194,7 @@ ASTROLITH_HD inline GaborCellSpan gabor_cells_around(const GaborDraw& band, int 
 
 // The number of cells along a side of a brick. Impulses are added in the order of bricks.
 inline constexpr int kBrickCells = 4;
-ASTROLITH_HD inline int gabor_brick_of(int cell) {
+ASTROLITH_HD inline int containing_gabor_brick(int cell) {
   return cell >= 0 ? cell / kBrickCells : -((-cell + kBrickCells - 1) / kBrickCells);
 }
 

@@ -103,7 +103,7 @@ GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int la
   return noise;
 }
 
-double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side) {
+double count_cells(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side) {
   double cells = 0.0;
   for (const SurfaceBand& band : arrays.span(noise.bands)) {
     cells += portable::whole_power((side + 2.0 * double{band.reach}) / double{band.cell} + 1.0, 3);
@@ -130,14 +130,14 @@ void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGrou
                                   const GaborBrickCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height) {
   const auto count = static_cast<std::size_t>(n / 4);
-  const auto center_of = [](const float* c) { return tetrahedron_center(c[0], c[1], c[2], c[3]); };
+  const auto row_center = [](const float* c) { return tetrahedron_center(c[0], c[1], c[2], c[3]); };
   std::vector<float> values(7 * count);
   float *cx = values.data(), *cy = cx + count, *cz = cy + count, *middle = cz + count, *sx = middle + count,
         *sy = sx + count, *sz = sy + count;
   for (std::size_t t = 0; t < count; ++t) {
-    cx[t] = center_of(x + 4 * t);
-    cy[t] = center_of(y + 4 * t);
-    cz[t] = center_of(z + 4 * t);
+    cx[t] = row_center(x + 4 * t);
+    cy[t] = row_center(y + 4 * t);
+    cz[t] = row_center(z + 4 * t);
   }
   const GaborSurfacePoints points = add_bands(noise, ground, caches, n / 4, cx, cy, cz, true);
   points.store_heights(middle);

@@ -65,7 +65,7 @@ GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int la
 
 // The number of cells that the impulses of all bands are drawn from for a cubic box; `side` is in length
 // units.
-double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side);
+double count_cells(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side);
 
 // The number of impulses that the cells around one point hold, in all bands.
 double draws_at_a_point(const GaborSurfaceNoise& noise, const ArrayView& arrays);

@@ -39,10 +39,10 @@ class GaborPointImpulses {
 constexpr double kCellSlack = 0.125;
 
 // The cells along one axis whose impulses may reach a point, and how far each cell is from the point.
-struct CellsOfAxis {
+struct AxisCells {
   static constexpr int kMost = 8;  // twice the reach of a kernel, 1.53/a, is below 5 cells long
 
-  CellsOfAxis(const SurfaceBand& band, int axis, float at) {
+  AxisCells(const SurfaceBand& band, int axis, float at) {
     const GaborCellSpan span = gabor_cells_around(band, axis, at, at);
     first = span.first;
     last = std::min(span.last, span.first + kMost - 1);
@@ -62,14 +62,15 @@ struct CellsOfAxis {
 
 // Calls visit(cell) for the cells of an axis in each of its bricks.
 template <typename Visit>
-void for_each_cell_of_brick(const CellsOfAxis& axis, int brick, const Visit& visit) {
+void for_each_brick_cell(const AxisCells& axis, int brick, const Visit& visit) {
   const int first = std::max(axis.first, brick * kBrickCells);
   const int last = std::min(axis.last, brick * kBrickCells + kBrickCells - 1);
   for (int c = first; c <= last; ++c) visit(c);
 }
 template <typename Visit>
-void for_each_brick(const CellsOfAxis& axis, const Visit& visit) {
-  for (int brick = gabor_brick_of(axis.first); brick <= gabor_brick_of(axis.last); ++brick) visit(brick);
+void for_each_brick(const AxisCells& axis, const Visit& visit) {
+  for (int brick = containing_gabor_brick(axis.first); brick <= containing_gabor_brick(axis.last); ++brick)
+    visit(brick);
 }
 
 // Whether kernels in a cell with this tangent frame may reach the point. (dx, dy, dz) is the offset of the
@@ -83,18 +84,18 @@ bool cell_reaches(const SurfaceBand& band, const TangentFrame& frame, float dx, 
 
 // Finds the cells within reach of the point, brick by brick.
 void GaborPointImpulses::find_cells(const std::array<float, 3>& point) {
-  const CellsOfAxis xs(band_, 0, point[0]), ys(band_, 1, point[1]), zs(band_, 2, point[2]);
+  const AxisCells xs(band_, 0, point[0]), ys(band_, 1, point[1]), zs(band_, 2, point[2]);
   const double reach = (1.0 + 1e-3) * double{band_.reach} / double{band_.cell} + kCellSlack;
   const double farthest = reach * reach;
   cells_.clear();
   for_each_brick(zs, [&](int tz) {
     for_each_brick(ys, [&](int ty) {
       for_each_brick(xs, [&](int tx) {
-        for_each_cell_of_brick(zs, tz, [&](int z) {
-          for_each_cell_of_brick(ys, ty, [&](int y) {
+        for_each_brick_cell(zs, tz, [&](int z) {
+          for_each_brick_cell(ys, ty, [&](int y) {
             const double gap = zs.gap(z) + ys.gap(y);
             if (gap > farthest) return;
-            for_each_cell_of_brick(xs, tx, [&](int x) {
+            for_each_brick_cell(xs, tx, [&](int x) {
               if (gap + xs.gap(x) <= farthest) cells_.push_back({x, y, z});
             });
           });
@@ -156,8 +157,8 @@ CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
 struct BrickRange {
   explicit BrickRange(const CellRange& cells) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] = gabor_brick_of(cells.first[axis]);
-      count[axis] = gabor_brick_of(cells.last[axis]) - first[axis] + 1;
+      first[axis] = containing_gabor_brick(cells.first[axis]);
+      count[axis] = containing_gabor_brick(cells.last[axis]) - first[axis] + 1;
     }
   }
   std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * count[2]); }
@@ -280,7 +281,7 @@ void GaborSurfacePoints::sort(int begin, int end) {
   sort(middle, end);
 }
 
-PointBox GaborSurfacePoints::box_of(int begin, int end) const {
+PointBox GaborSurfacePoints::bounding_box(int begin, int end) const {
   const auto at = [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     return std::array<float, 3>{x_[k], y_[k], z_[k]};
@@ -306,11 +307,11 @@ PointBox GaborSurfacePoints::box_of(int begin, int end) const {
   return box;
 }
 
-GroupBoxes GaborSurfacePoints::groups_of(float a, int begin, int end) const {
+GroupBoxes GaborSurfacePoints::group_boxes(float a, int begin, int end) const {
   GroupBoxes groups;
   for (int i = begin; i < end; i += kGroup) {
     const Group& from = groups_[static_cast<std::size_t>(i / kGroup)];
-    const GaborTarget target = target_of(from.box, a);
+    const GaborTarget target = make_target(from.box, a);
     const std::size_t g = groups.count++;
     groups.x[g] = target.center[0];
     groups.y[g] = target.center[1];
@@ -340,7 +341,7 @@ bool GaborSurfacePoints::whole_groups(int begin, int end) const {
 }
 
 void GaborSurfacePoints::add_band(const GaborBricks& bricks, int begin, int end) {
-  const CellRange range = cells_around(bricks.band(), box_of(begin, end));
+  const CellRange range = cells_around(bricks.band(), bounding_box(begin, end));
   if (range.cells() > kMostCells && end - begin > 1) {
     const int unit = end - begin > kGroup ? kGroup : 1;
     const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
@@ -356,7 +357,7 @@ void GaborSurfacePoints::add_band(const GaborBricks& bricks, int begin, int end)
 // Bricks come in one order whatever part of them is held at once, and the sums are taken in this order.
 void GaborSurfacePoints::add_to_dense(const GaborBricks& bricks, const CellRange& cells, int begin, int end) {
   const BrickRange range(cells);
-  const PointBox box = box_of(begin, end);
+  const PointBox box = bounding_box(begin, end);
   Chunks chunks;
   for (std::size_t next = 0; next < range.size();) {
     const HeldBricks held = next_bricks(bricks, range, next);
@@ -371,10 +372,10 @@ void GaborSurfacePoints::add_chunks(const std::vector<const ImpulseChunk*>& all,
   Chunks chunks;
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    const PointBox box = box_of(cluster, cluster_end);
+    const PointBox box = bounding_box(cluster, cluster_end);
     narrow(all, box, chunks);
-    add_to_groups(chunks, band.a, band.amplitude, target_of(box, band.a),
-                  groups_of(band.a, cluster, cluster_end), sums_from(cluster));
+    add_to_groups(chunks, band.a, band.amplitude, make_target(box, band.a),
+                  group_boxes(band.a, cluster, cluster_end), sums_from(cluster));
   }
 }
 

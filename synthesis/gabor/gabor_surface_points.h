@@ -34,7 +34,7 @@ class GaborSurfacePoints {
  private:
   int size() const { return static_cast<int>(index_.size()); }
   void sort(int begin, int end);
-  PointBox box_of(int begin, int end) const;
+  PointBox bounding_box(int begin, int end) const;
   HeightSums sums_from(int begin);
   bool whole_groups(int begin, int end) const;
   void add_band(const GaborBricks& bricks, int begin, int end);
@@ -43,7 +43,7 @@ class GaborSurfacePoints {
   void add_chunks(const std::vector<const ImpulseChunk*>& chunks, const SurfaceBand& band, int begin,
                   int end);
   void find_groups();
-  GroupBoxes groups_of(float a, int begin, int end) const;
+  GroupBoxes group_boxes(float a, int begin, int end) const;
 
   // The box of the points of a group, and their greatest distance from its centre.
   struct Group {

@@ -59,7 +59,7 @@ struct PlaneImpulses {
 };
 
 // A uniform number in [0, 1) as unit_float() gives it.
-ASTROLITH_KERNEL float unit_of(std::uint32_t hash) {
+ASTROLITH_KERNEL float to_unit(std::uint32_t hash) {
   return static_cast<float>(static_cast<std::int32_t>(hash >> 8)) * 0x1p-24f;
 }
 
@@ -73,7 +73,7 @@ ASTROLITH_SIMD_CLONES void place_along(std::size_t n, std::uint32_t axis, double
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t hash = hash_append(cell_hash[i], number[i]);
-    const double at = (cell[i] + static_cast<double>(unit_of(hash_append(hash, axis)))) * side;
+    const double at = (cell[i] + static_cast<double>(to_unit(hash_append(hash, axis)))) * side;
     const double low = __builtin_ceil(at - 0.5 - first - reach);
     const double high = __builtin_floor(at - 0.5 - first + reach) + 1.0;
     offset[i] = static_cast<float>(center - at);
@@ -88,8 +88,8 @@ ASTROLITH_SIMD_CLONES void draw_lobes(std::size_t n, const std::uint32_t* __rest
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t hash = hash_append(cell_hash[i], number[i]);
-    phase[i] = unit_of(hash_append(hash, 2));
-    lobe[i] = unit_of(hash_append(hash, 3));
+    phase[i] = to_unit(hash_append(hash, 2));
+    lobe[i] = to_unit(hash_append(hash, 3));
   }
 }
 
@@ -192,12 +192,12 @@ int wrapped(int cell, int wrap) { return wrap == 0 ? cell : ((cell % wrap) + wra
 
 // Adds the noise of a band to the heights of a square.
 void add_band(const PlaneBand& band, TextureSquare& square) {
-  const auto cell_of = [](double pixel, double side) { return static_cast<int>(std::floor(pixel / side)); };
-  const int last_x = cell_of(square.x + kTextureSquare + band.reach, band.cell_x);
-  const int last_y = cell_of(square.y + kTextureSquare + band.reach, band.cell_y);
+  const auto cell_at = [](double pixel, double side) { return static_cast<int>(std::floor(pixel / side)); };
+  const int last_x = cell_at(square.x + kTextureSquare + band.reach, band.cell_x);
+  const int last_y = cell_at(square.y + kTextureSquare + band.reach, band.cell_y);
   PlaneImpulses drawn;
-  for (int cy = cell_of(square.y - band.reach, band.cell_y); cy <= last_y; ++cy) {
-    for (int cx = cell_of(square.x - band.reach, band.cell_x); cx <= last_x; ++cx) {
+  for (int cy = cell_at(square.y - band.reach, band.cell_y); cy <= last_y; ++cy) {
+    for (int cx = cell_at(square.x - band.reach, band.cell_x); cx <= last_x; ++cx) {
       const std::uint32_t cell = hash_cell(band.seed, wrapped(cx, band.wrap_x), wrapped(cy, band.wrap_y), 0);
       for (int j = 0; j < band.impulses_per_cell; ++j) {
         const std::size_t i = drawn.count++;

@@ -121,7 +121,7 @@ void add_facets(double angularity, BoulderKernel& kernel) {
   for (std::uint32_t& depths : kernel.facet_depths) depths = static_cast<std::uint32_t>(random.next());
 }
 
-BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder) {
+BoulderKernel make_kernel(const BoulderLayer& layer, const PlacedBoulder& boulder) {
   const Vec3d half = 0.5 * boulder.axes;
   const double least = std::min({half.x, half.y, half.z});
   // |distance| is at least |1 - |u|| times the least half axis. Beyond this |u| neither the noise nor the
@@ -159,7 +159,7 @@ double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double 
 // centre. A boulder of any shape therefore touches the ground.
 void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& upright, PlacedBoulder& boulder) {
   turn(upright, boulder);
-  const BoulderKernel kernel = kernel_of(layer, boulder);
+  const BoulderKernel kernel = make_kernel(layer, boulder);
   const double longest = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
   const double above = extent_along(kernel, upright, longest),
                below = extent_along(kernel, -upright, longest);
@@ -181,7 +181,7 @@ std::vector<Vec3d> find_verticals(const BoulderLayer& layer, const BareSurface& 
 }
 
 // The box of a boulder whose axes are longer by the factor `reach`.
-Box reach_of(const PlacedBoulder& boulder, double reach) {
+Box reach_box(const PlacedBoulder& boulder, double reach) {
   const Vec3d half = 0.5 * boulder.axes;
   const auto extent = [&](double x, double y, double z) {
     return reach * norm(Vec3d{half.x * x, half.y * y, half.z * z});
@@ -251,7 +251,8 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
 std::vector<FieldBoulder> field_boulders(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders) {
   std::vector<FieldBoulder> joined;
   for (const PlacedBoulder& boulder : boulders) {
-    joined.push_back({kernel_of(layer, boulder), reach_of(boulder, 1.0 + layer.smoothing + layer.roughness)});
+    joined.push_back(
+        {make_kernel(layer, boulder), reach_box(boulder, 1.0 + layer.smoothing + layer.roughness)});
   }
   return joined;
 }

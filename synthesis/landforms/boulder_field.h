@@ -132,7 +132,7 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
 double drawn_reach(const BoulderLayer& layer);
 inline double drawn_reach(const CraterLayer&) { return 0.0; }
 // A bound of what the layer's boulders add to elevations, on which they lie; length units.
-inline double rise_of(const BoulderLayer&) { return 0.0; }
+inline double largest_rise(const BoulderLayer&) { return 0.0; }
 
 // A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {

@@ -13,13 +13,13 @@ constexpr double kMostOverlaps =
     2000.0;                          // the most craters over a place on average, which bounds a point's cost
 constexpr double kReliefClip = 2.0;  // bound of the relief of all craters, in the greatest relief of one
 
-const CraterProfile& profile_of(const CraterLayer& layer, bool complex) {
+const CraterProfile& crater_profile(const CraterLayer& layer, bool complex) {
   return complex ? layer.complex : layer.simple;
 }
 
 PlacedCrater sized_crater(const CraterLayer& layer, double diameter, double age) {
   const bool complex = layer.complex_from && diameter >= *layer.complex_from;
-  const CraterProfile& profile = profile_of(layer, complex);
+  const CraterProfile& profile = crater_profile(layer, complex);
   return {{}, diameter, profile.depth * diameter, profile.rim_height * diameter, age, complex};
 }
 
@@ -86,7 +86,8 @@ void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrate
                          const BareSurface& surface, const std::string& where) {
   double covered = 0.0;
   for (const PlacedCrater& crater : craters) {
-    const double across = profile_of(layer, crater.complex).extent * crater.diameter / surface.longest_side();
+    const double across =
+        crater_profile(layer, crater.complex).extent * crater.diameter / surface.longest_side();
     covered += 0.25 * across * across;
   }
   covered = std::max(covered, coverage_by_cells(layer));
@@ -96,7 +97,7 @@ void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrate
                    "; use fewer or smaller ones");
 }
 
-CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater, const Vec3d& center) {
+CraterKernel make_kernel(const CraterProfile& profile, const PlacedCrater& crater, const Vec3d& center) {
   const double radius = 0.5 * crater.diameter;
   CraterKernel kernel{};
   kernel.x = static_cast<float>(center.x);
@@ -183,12 +184,12 @@ std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurf
   return craters;
 }
 
-double rise_of(const CraterLayer& layer) {
+double largest_rise(const CraterLayer& layer) {
   double greatest = 0.0;
   const auto include = [&](double diameter, double factor) {
     for (const bool complex : {false, true}) {
       if (complex && !layer.complex_from) continue;
-      const CraterProfile& profile = profile_of(layer, complex);
+      const CraterProfile& profile = crater_profile(layer, complex);
       const double relief = std::max(profile.depth, profile.rim_height) * factor + profile.peak_height;
       greatest = std::max(greatest, diameter * relief);
     }
@@ -218,14 +219,14 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
   std::vector<CraterKernel> craters;
   for (std::size_t i = 0; i < oldest_first.size(); ++i) {
     const PlacedCrater& crater = oldest_first[i];
-    craters.push_back(kernel_of(profile_of(layer, crater.complex), crater, centers[i]));
+    craters.push_back(make_kernel(crater_profile(layer, crater.complex), crater, centers[i]));
     const double peak = double{craters.back().peak_height};
     greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
   }
   find_bases(oldest_first, elevations, craters);
   // Which of the craters drawn by cells is the largest depends on the region; the bound must not.
   const bool by_cells = layer.population && layer.population->drawn.by_cells;
-  const double rise = by_cells ? rise_of(layer) : kReliefClip * greatest;
+  const double rise = by_cells ? largest_rise(layer) : kReliefClip * greatest;
   return {arrays.add(craters), bound_before + rise, 0};
 }
 

@@ -95,7 +95,7 @@ std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurf
 
 // A bound of |elevation| after the layer's craters, over that before, if no crater is larger than its
 // greatest listed or drawn diameter; length units.
-double rise_of(const CraterLayer& layer);
+double largest_rise(const CraterLayer& layer);
 
 // The craters of a layer, oldest first, with the constants that their evaluation needs.
 struct CraterRelief {

@@ -15,7 +15,7 @@ namespace {
 
 // What a layer's random numbers are for.
 enum class Purpose : std::uint32_t { kLandform = 0x706f7000, kPlace = 0x706c6300, kCluster = 0x636c7500 };
-constexpr std::uint32_t kCountOfLayer = 0xffffffffu;
+constexpr std::uint32_t kCountDraw = 0xffffffffu;
 
 // A place is drawn again where its weight or its cluster rejects it. All landforms together take at most so
 // many places.
@@ -24,8 +24,8 @@ constexpr std::int64_t kPlacesBetweenReports = 1 << 15;
 
 // The random numbers of a landform or a cluster. Sums of purpose and layer differ while layers are counted;
 // a layer with a seed of its own may have any number, so that its key is a hash.
-CounterRandom stream_of(std::uint64_t seed, int layer_index, std::size_t landform,
-                        Purpose purpose = Purpose::kLandform) {
+CounterRandom make_random(std::uint64_t seed, int layer_index, std::size_t landform,
+                          Purpose purpose = Purpose::kLandform) {
   const auto layer = static_cast<std::uint32_t>(layer_index), use = static_cast<std::uint32_t>(purpose);
   const std::uint32_t key =
       layer_index > kMaxLayerSeed ? hash_append(hash_append(0, layer), use) : use + layer;
@@ -41,8 +41,8 @@ int poisson_number(double mean, CounterRandom random) {
   return number;
 }
 
-int number_of(const Population& population, const BareSurface& surface, const CounterRandom& random,
-              const std::string& where) {
+int draw_count(const Population& population, const BareSurface& surface, const CounterRandom& random,
+               const std::string& where) {
   if (population.count) return *population.count;
   const double mean = *population.density * surface.area();
   if (mean > 0.9 * kMaxDrawnLandforms) {  // far beyond chance
@@ -77,7 +77,7 @@ class PlaceSearch {
     if (!population.clusters) return;
     std::vector<Vec3d> random;
     for (int i = 0; i < population.clusters->number; ++i) {
-      CounterRandom own = stream_of(seed, layer_index, static_cast<std::size_t>(i), Purpose::kCluster);
+      CounterRandom own = make_random(seed, layer_index, static_cast<std::size_t>(i), Purpose::kCluster);
       random.push_back(uniform_numbers(own));
     }
     centers_ = surface.scatter(random);
@@ -140,7 +140,7 @@ void find_places(const Population& population, const BareSurface& surface, std::
   const PlaceSearch search(population, surface, seed, layer_index, places);
   std::vector<Seeker> seekers;
   for (std::size_t i = 0; i < landforms.size(); ++i) {
-    seekers.push_back({i, stream_of(seed, layer_index, i, Purpose::kPlace)});
+    seekers.push_back({i, make_random(seed, layer_index, i, Purpose::kPlace)});
   }
   std::vector<char> found(landforms.size(), 0);
   std::int64_t tried = 0;
@@ -210,10 +210,10 @@ std::vector<DrawnLandform> draw_population(const Population& population, const B
   if (population.by_cells) {
     return draw_population_by_cells(population, surface, seed, layer_index, where, places);
   }
-  const int number = number_of(population, surface, stream_of(seed, layer_index, kCountOfLayer), where);
+  const int number = draw_count(population, surface, make_random(seed, layer_index, kCountDraw), where);
   std::vector<DrawnLandform> landforms(static_cast<std::size_t>(number));
   for (std::size_t i = 0; i < landforms.size(); ++i) {
-    landforms[i].random = stream_of(seed, layer_index, i);
+    landforms[i].random = make_random(seed, layer_index, i);
     landforms[i].diameter = diameter_at(population, landforms[i].random.uniform());
   }
   if (places.weight || population.clusters) {

@@ -13,11 +13,11 @@
 namespace astrolith {
 namespace {
 
-constexpr int kMostClasses = 64;          // sizes 2^64 apart
-constexpr double kLeastPerCell = 4.0;     // cells of rare landforms are made wider until they hold so many
-constexpr double kCellInDiameters = 4.0;  // the narrowest cells of a class, in its greatest diameter
-constexpr double kShellInCells = 0.25;    // half the thickness of the shell whose points are projected
-constexpr double kMostCellsOfClass = 0x1p26;  // cells that one class looks through
+constexpr int kMostClasses = 64;            // sizes 2^64 apart
+constexpr double kLeastPerCell = 4.0;       // cells of rare landforms are made wider until they hold so many
+constexpr double kCellInDiameters = 4.0;    // the narrowest cells of a class, in its greatest diameter
+constexpr double kShellInCells = 0.25;      // half the thickness of the shell whose points are projected
+constexpr double kMostClassCells = 0x1p26;  // cells that one class looks through
 constexpr std::int64_t kCellsAtOnce = 4096;
 
 // A class of sizes, upper / 2 .. upper, and its lattice. The last class may begin below the least diameter.
@@ -31,33 +31,33 @@ struct SizeClass {
   double shell() const { return kShellInCells * cell; }
 };
 
-double upper_of(const Population& population, int number) {
+double upper_diameter(const Population& population, int number) {
   return population.greatest_diameter * portable::pow(2.0, -number);
 }
 
 // Cells are the greatest diameter times a power of two, so that rounding cannot move them.
-double cell_of(const Population& population, int number, double density, double widest) {
-  double cell = kCellInDiameters * upper_of(population, number);
+double cell_side(const Population& population, int number, double density, double widest) {
+  double cell = kCellInDiameters * upper_diameter(population, number);
   while (density * cell * cell < kLeastPerCell && 2.0 * cell <= widest) cell *= 2.0;
   return cell;
 }
 
-std::vector<SizeClass> classes_of(const Population& population, const BareSurface& surface) {
+std::vector<SizeClass> make_size_classes(const Population& population, const BareSurface& surface) {
   const double widest = kCellInDiameters * kGreatestByCells * surface.longest_side();
   std::vector<SizeClass> classes;
   for (int k = 0; k < kMostClasses; ++k) {
-    const double upper = upper_of(population, k), lower = upper_of(population, k + 1);
+    const double upper = upper_diameter(population, k), lower = upper_diameter(population, k + 1);
     if (k > 0 && upper <= population.least_diameter) break;
     const double low = share_below(population, lower), high = share_below(population, upper);
     const double density = *population.density * (high - low);
-    classes.push_back({k, low, high, upper, density, cell_of(population, k, density, widest)});
+    classes.push_back({k, low, high, upper, density, cell_side(population, k, density, widest)});
   }
   return classes;
 }
 
 // What a class adds to the variance of heights, up to a factor: a landform of diameter D covers about D^2 and
 // is about D high.
-double variance_of(const Population& population, const SizeClass& size) {
+double class_variance(const Population& population, const SizeClass& size) {
   constexpr int kSamples = 16;
   double sum = 0.0;
   for (int i = 0; i < kSamples; ++i) {
@@ -74,7 +74,7 @@ struct Cell {
 };
 
 // The stream of a cell's random numbers: 64 bits of its place, from two hashes.
-CounterRandom stream_of(std::uint64_t seed, int layer_index, int size_class, const Cell& cell) {
+CounterRandom make_random(std::uint64_t seed, int layer_index, int size_class, const Cell& cell) {
   const auto half = [&](std::uint32_t salt) {
     const std::uint32_t h = hash_append(hash_seed(seed, static_cast<std::uint32_t>(layer_index)), salt);
     return hash_wide_cell(hash_append(h, static_cast<std::uint32_t>(size_class)), cell.x, cell.y, cell.z);
@@ -111,12 +111,12 @@ class CellDrawing {
 
   // The landforms of a class that matter to the region.
   void add(const SizeClass& size, const std::string& where, std::vector<DrawnLandform>& out) const {
-    const std::optional<Box> region = region_of(size);
+    const std::optional<Box> region = class_region(size);
     Box box = widened(surface_.bounds(), size.shell());
     if (region) box = common(box, widened(*region, size.shell()));
     if (!valid(box)) return;
     const CellRange cells(box, size.cell);
-    if (cells.total() > kMostCellsOfClass) fail(where, "look through more cells than 6e7");
+    if (cells.total() > kMostClassCells) fail(where, "look through more cells than 6e7");
     const auto total = static_cast<std::int64_t>(cells.total());
     std::vector<std::vector<DrawnLandform>> drawn(static_cast<std::size_t>(std::min(total, kCellsAtOnce)));
     for (std::int64_t first = 0; first < total; first += kCellsAtOnce) {
@@ -150,15 +150,16 @@ class CellDrawing {
 
   // The box on the bare surface where landforms of a class matter to the region: the feet of the points
   // within their reach. Layers may lift the surface by many times the region's side, but along normals.
-  std::optional<Box> region_of(const SizeClass& size) const {
+  std::optional<Box> class_region(const SizeClass& size) const {
     if (!places_.region) return std::nullopt;
     const double reach = places_.reach * size.upper;
-    return common(feet_of(widened(*places_.region, reach)), widened(*places_.region, reach + places_.margin));
+    return common(foot_box(widened(*places_.region, reach)),
+                  widened(*places_.region, reach + places_.margin));
   }
 
   // A box around the projections of the points of a box on the bare surface: of a lattice of points, with two
   // of its steps for those between.
-  Box feet_of(const Box& box) const {
+  Box foot_box(const Box& box) const {
     constexpr int kSteps = 8;
     const Vec3d step = box.extent() * (1.0 / kSteps);
     Box feet;
@@ -181,7 +182,7 @@ class CellDrawing {
     const double across = surface_.lipschitz_bound() * 0.8661 * side;
     const double rounding = 1e-5 * largest_coordinate(surface_.bounds());
     if (std::fabs(surface_.value(middle)) > across + shell + rounding) return;
-    CounterRandom random = stream_of(seed_, layer_index_, size.number, cell);
+    CounterRandom random = make_random(seed_, layer_index_, size.number, cell);
     const double mean = size.density / (2.0 * shell) * side * side * side;
     for (double waited = next_event(random); waited < mean; waited += next_event(random)) {
       Vec3d p{random.uniform(), random.uniform(), random.uniform()};
@@ -220,10 +221,10 @@ SizesByCells sizes_by_cells(const Population& population, const BareSurface& sur
   SizesByCells sizes;
   sizes.least = population.greatest_diameter;
   double number = 0.0, variance = 0.0, left_out = 0.0;
-  for (const SizeClass& size : classes_of(population, surface)) {
+  for (const SizeClass& size : make_size_classes(population, surface)) {
     const double lower = std::max(population.least_diameter, 0.5 * size.upper);
     const double size_density = *population.density * (size.high_share - std::max(size.low_share, 0.0)),
-                 on_body = size_density * surface.area(), part = variance_of(population, size);
+                 on_body = size_density * surface.area(), part = class_variance(population, size);
     variance += part;
     const bool few = !whole_body || number + on_body <= kMostByCellsOnBody;
     if (sizes.classes == size.number && lower >= finest && few) {
@@ -253,7 +254,7 @@ std::vector<DrawnLandform> draw_population_by_cells(const Population& population
   if (*population.density == 0.0) return landforms;
   const SizesByCells sizes = sizes_by_cells(population, surface, !places.region);
   const CellDrawing drawing(population, surface, seed, layer_index, places);
-  for (const SizeClass& size : classes_of(population, surface)) {
+  for (const SizeClass& size : make_size_classes(population, surface)) {
     if (size.number < sizes.classes) drawing.add(size, where, landforms);
   }
   return landforms;

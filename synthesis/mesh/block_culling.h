@@ -67,7 +67,7 @@ struct BlockGrid {
 
   ASTROLITH_HD int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
   // The window in the local coordinates of block x, y, z.
-  ASTROLITH_HD BlockWindow<B> window_of(int x, int y, int z) const {
+  ASTROLITH_HD BlockWindow<B> block_window(int x, int y, int z) const {
     BlockWindow<B> local;
     const std::array<int, 3> block{x, y, z};
     for (std::size_t axis = 0; axis < 3; ++axis) {

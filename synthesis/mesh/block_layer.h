@@ -116,7 +116,7 @@ Owners<B> find_owners(const BlockLayer<B>& layer, const BlockLayer<B>& below, co
 }
 
 // The index in Owners of the block that owns a local sample.
-constexpr unsigned owner_of(int x, int y, int z) {
+constexpr unsigned owner_index(int x, int y, int z) {
   return (x == 0 ? 1u : 0u) | (y == 0 ? 2u : 0u) | (z == 0 ? 4u : 0u);
 }
 

@@ -228,8 +228,8 @@ void take_normals(const Block& field, float h, VertexBatch& batch) {
 // Calls visit(x, y, z, axis) for the meshed edges of row y, z that a block owns, in the order of their
 // vertices.
 template <int B, typename Visit>
-ASTROLITH_HD void for_each_meshed_edge_of_row(const LayerBlock<B>& block, const BlockWindow<B>& window, int y,
-                                              int z, const Visit& visit) {
+ASTROLITH_HD void for_each_meshed_row_edge(const LayerBlock<B>& block, const BlockWindow<B>& window, int y,
+                                           int z, const Visit& visit) {
   const CellRow<B> cells(block, y, z);
   const SignRow edges[] = {meshed_edges(cells, window, y, z, 0), meshed_edges(cells, window, y, z, 1),
                            meshed_edges(cells, window, y, z, 2)};
@@ -244,7 +244,7 @@ ASTROLITH_HD void for_each_meshed_edge_of_row(const LayerBlock<B>& block, const 
 template <int B, typename Visit>
 void for_each_meshed_edge(const LayerBlock<B>& block, const BlockWindow<B>& window, const Visit& visit) {
   for (int z = 1; z <= B; ++z) {
-    for (int y = 1; y <= B; ++y) for_each_meshed_edge_of_row(block, window, y, z, visit);
+    for (int y = 1; y <= B; ++y) for_each_meshed_row_edge(block, window, y, z, visit);
   }
 }
 
@@ -282,7 +282,7 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
   // Probes lie a quarter of a step from the vertex: near enough for O(h^2), far enough apart for differences
   // of floats.
   const auto h = static_cast<float>(0.25 * grid.samples.step);
-  const BlockWindow<B> window = grid.window_of(block.x, block.y, layer_z);
+  const BlockWindow<B> window = grid.block_window(block.x, block.y, layer_z);
   std::int64_t evaluations = 0;
   if constexpr (HasSureSigns<Block>) {
     evaluations += evaluate_edge_ends(grid, layer_z, field, window, block);
@@ -311,7 +311,7 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
 template <int B>
 ASTROLITH_HD bool fill_halo_vertices(const Owners<B>& owners, const BlockWindow<B>& window, int x, int y,
                                      int z, LayerBlock<B>& block) {
-  const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
+  const LayerBlock<B>* owner = owners[owner_index(x, y, z)];
   for (int axis = 0; axis < 3; ++axis) {
     const int lx = x - (axis == 0), ly = y - (axis == 1), lz = z - (axis == 2);
     if (lx < 0 || ly < 0 || lz < 0) continue;  // no cell of this block has the edge

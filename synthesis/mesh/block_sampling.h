@@ -107,7 +107,7 @@ ASTROLITH_HD SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, co
   const auto mine = [&](unsigned owner) { return owner == 0 || owners[owner] == nullptr; };
   const auto [nx, ny, nz] = grid.samples.cells;
   if (block.y * B + y > ny || layer_z * B + z > nz) return {0, -1};
-  return {mine(owner_of(0, y, z)) ? 0 : 1, mine(owner_of(1, y, z)) ? std::min(B, nx - block.x * B) : 0};
+  return {mine(owner_index(0, y, z)) ? 0 : 1, mine(owner_index(1, y, z)) ? std::min(B, nx - block.x * B) : 0};
 }
 
 // True when the block holds samples on the border of the grid.
@@ -204,7 +204,7 @@ ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
 // Copies a halo sample from its owner, where the owner is active.
 template <int B>
 ASTROLITH_HD void fill_halo_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
-  const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
+  const LayerBlock<B>* owner = owners[owner_index(x, y, z)];
   if (owner == nullptr) return;
   block.values[LayerBlock<B>::sample(x, y, z)] = owner->values[owned_sample<B>(x, y, z)];
 }
@@ -216,7 +216,7 @@ void fill_sample_halo(const Owners<B>& owners, LayerBlock<B>& block) {
     for (int y = 0; y <= B; ++y) {
       fill_halo_sample(owners, 0, y, z, block);
       if (y != 0 && z != 0) continue;
-      const LayerBlock<B>* owner = owners[owner_of(1, y, z)];
+      const LayerBlock<B>* owner = owners[owner_index(1, y, z)];
       if (owner == nullptr) continue;
       std::copy_n(owner->values.data() + owned_sample<B>(1, y, z), B,
                   block.values.data() + LayerBlock<B>::sample(1, y, z));
@@ -226,7 +226,7 @@ void fill_sample_halo(const Owners<B>& owners, LayerBlock<B>& block) {
 
 // The signs of row sign_row(y, z).
 template <int B>
-ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
+ASTROLITH_HD SignRow row_signs(const LayerBlock<B>& block, std::size_t row) {
   const float* value = block.values.data() + row * LayerBlock<B>::kSide;
   SignRow signs = 0;
   for (int x = 0; x <= B; ++x) signs |= (value[x] > 0.0f ? SignRow{1} : SignRow{0}) << x;
@@ -235,7 +235,7 @@ ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
 
 template <int B>
 void take_signs(LayerBlock<B>& block) {
-  for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = signs_of_row(block, row);
+  for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = row_signs(block, row);
 }
 
 // Whether the surface crosses an edge between two samples of the block. Expects the signs of all rows.

@@ -11,7 +11,7 @@ namespace astrolith {
 namespace {
 
 // The number of a block along an axis.
-std::size_t block_of(float coordinate, double low, double side) {
+std::size_t block_index(float coordinate, double low, double side) {
   return static_cast<std::size_t>(std::max((double{coordinate} - low) / side, 0.0));
 }
 
@@ -30,15 +30,15 @@ std::vector<std::size_t> sort_by_key(std::span<std::uint32_t> numbers, std::size
 
 constexpr std::int64_t kRelaxationGrain = 2048;
 
-std::vector<Vec3f> positions_of(std::span<const MeshVertex> vertices) {
+std::vector<Vec3f> vertex_positions(std::span<const MeshVertex> vertices) {
   std::vector<Vec3f> places(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) places[v] = vertices[v].position;
   return places;
 }
 
 // Marks the corners of the triangles below this quality.
-std::vector<char> corners_of_poor(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles,
-                                  float quality) {
+std::vector<char> mark_poor_corners(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles,
+                                    float quality) {
   std::vector<char> marked(vertices.size());
   for (const Triangle& t : triangles) {
     if (triangle_quality(vertices[t[0]].position, vertices[t[1]].position, vertices[t[2]].position) < quality)
@@ -65,17 +65,18 @@ VertexBlocks sort_into_blocks(std::span<const Vec3f> places, std::vector<std::ui
   const auto blocks_along = [&](double extent) { return static_cast<std::size_t>(extent / side) + 1; };
   const std::size_t along_x = blocks_along(box.extent().x), along_y = blocks_along(box.extent().y);
   sorted.slabs = sort_by_key(sorted.numbers, blocks_along(box.extent().z),
-                             [&](std::uint32_t v) { return block_of(places[v].z, box.min.z, side); });
+                             [&](std::uint32_t v) { return block_index(places[v].z, box.min.z, side); });
   const std::size_t num_slabs = sorted.slabs.size() - 1;
   std::vector<std::vector<VertexBlock>> slab_blocks(num_slabs);
   parallel_for(0, static_cast<std::int64_t>(num_slabs), [&](std::int64_t i) {
     const auto s = static_cast<std::size_t>(i);
     const std::size_t begin = sorted.slabs[s];
-    const std::vector<std::size_t> first = sort_by_key(
-        std::span(sorted.numbers).subspan(begin, sorted.slabs[s + 1] - begin), along_x * along_y,
-        [&](std::uint32_t v) {
-          return block_of(places[v].y, box.min.y, side) * along_x + block_of(places[v].x, box.min.x, side);
-        });
+    const std::vector<std::size_t> first =
+        sort_by_key(std::span(sorted.numbers).subspan(begin, sorted.slabs[s + 1] - begin), along_x * along_y,
+                    [&](std::uint32_t v) {
+                      return block_index(places[v].y, box.min.y, side) * along_x +
+                             block_index(places[v].x, box.min.x, side);
+                    });
     for (std::size_t b = 0; b + 1 < first.size(); ++b) {
       if (first[b] < first[b + 1]) slab_blocks[s].push_back({s, begin + first[b], begin + first[b + 1]});
     }
@@ -106,26 +107,26 @@ MeshRelaxation::MeshRelaxation(std::size_t num_vertices, std::span<const Triangl
 bool MeshRelaxation::is_inner(std::size_t v) const { return balance_[v] == 0 && first_[v] < first_[v + 1]; }
 
 // The neighbours of a vertex inside the surface, each once. Around a vertex at an open edge one is missing.
-std::span<const std::uint32_t> MeshRelaxation::neighbours_of(std::size_t v) const {
+std::span<const std::uint32_t> MeshRelaxation::neighbours(std::size_t v) const {
   return std::span(neighbours_).subspan(first_[v], first_[v + 1] - first_[v]);
 }
 
 // The way to the mean of the neighbours, without its part along the normal.
-Vec3f MeshRelaxation::move_of(std::span<const Vec3f> places, std::size_t v, const Vec3f& normal) const {
+Vec3f MeshRelaxation::vertex_move(std::span<const Vec3f> places, std::size_t v, const Vec3f& normal) const {
   Vec3f sum;
-  for (const std::uint32_t n : neighbours_of(v)) sum += places[n] - places[v];
-  const Vec3f move = sum * (1.0f / static_cast<float>(neighbours_of(v).size()));
+  for (const std::uint32_t n : neighbours(v)) sum += places[n] - places[v];
+  const Vec3f move = sum * (1.0f / static_cast<float>(neighbours(v).size()));
   return move - normal * dot(move, normal);
 }
 
 std::vector<Vec3f> MeshRelaxation::places_after(std::span<const MeshVertex> vertices, int sweeps) const {
-  std::vector<Vec3f> places = positions_of(vertices), next = places;
+  std::vector<Vec3f> places = vertex_positions(vertices), next = places;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     parallel_for(
         0, static_cast<std::int64_t>(vertices.size()),
         [&](std::int64_t i) {
           const auto v = static_cast<std::size_t>(i);
-          if (is_inner(v)) next[v] = places[v] + move_of(places, v, vertices[v].normal);
+          if (is_inner(v)) next[v] = places[v] + vertex_move(places, v, vertices[v].normal);
         },
         kRelaxationGrain);
     places.swap(next);
@@ -135,11 +136,11 @@ std::vector<Vec3f> MeshRelaxation::places_after(std::span<const MeshVertex> vert
 
 std::vector<Vec3f> MeshRelaxation::places_for_poor(std::span<const MeshVertex> vertices,
                                                    std::span<const Triangle> triangles, float quality) const {
-  const std::vector<char> marked = corners_of_poor(vertices, triangles, quality);
-  const std::vector<Vec3f> places = positions_of(vertices);
+  const std::vector<char> marked = mark_poor_corners(vertices, triangles, quality);
+  const std::vector<Vec3f> places = vertex_positions(vertices);
   std::vector<Vec3f> next = places;
   for (std::size_t v = 0; v < places.size(); ++v) {
-    if (marked[v] != 0 && is_inner(v)) next[v] += move_of(places, v, vertices[v].normal) * 0.5f;
+    if (marked[v] != 0 && is_inner(v)) next[v] += vertex_move(places, v, vertices[v].normal) * 0.5f;
   }
   return next;
 }

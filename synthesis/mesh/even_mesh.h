@@ -70,7 +70,7 @@ struct VertexBlocks {
   std::vector<VertexBlock> blocks;  // by slab
   std::vector<std::size_t> slabs;   // slab s is numbers[slabs[s]] .. numbers[slabs[s + 1] - 1]
 
-  std::span<const std::uint32_t> numbers_of(std::size_t begin, std::size_t end) const {
+  std::span<const std::uint32_t> slice(std::size_t begin, std::size_t end) const {
     return std::span(numbers).subspan(begin, end - begin);
   }
   std::size_t num_slabs() const { return slabs.empty() ? 0 : slabs.size() - 1; }
@@ -215,22 +215,22 @@ std::int64_t return_to_surface(const Field& field, double step, std::span<const 
   }
   if (moving.empty()) return 0;
   const VertexBlocks sorted = sort_into_blocks(places, std::move(moving), kReturnBlock * step);
-  const auto box_of = [&](std::span<const std::uint32_t> numbers) {
+  const auto probe_box = [&](std::span<const std::uint32_t> numbers) {
     return widened(box_around(places, numbers), (double{kLongestReturn} + kProbeReach) * step);
   };
-  const auto whole = field.gather(box_of(sorted.numbers));
+  const auto whole = field.gather(probe_box(sorted.numbers));
   std::vector<std::optional<decltype(field.gather(Box{}))>> slabs(sorted.num_slabs());
   parallel_for(0, static_cast<std::int64_t>(slabs.size()), [&](std::int64_t i) {
     const auto s = static_cast<std::size_t>(i);
-    const auto numbers = sorted.numbers_of(sorted.slabs[s], sorted.slabs[s + 1]);
-    if (!numbers.empty()) slabs[s] = whole.restricted_to(box_of(numbers));
+    const auto numbers = sorted.slice(sorted.slabs[s], sorted.slabs[s + 1]);
+    if (!numbers.empty()) slabs[s] = whole.restricted_to(probe_box(numbers));
   });
   std::vector<std::int64_t> evaluations(sorted.blocks.size());
   const auto num_blocks = static_cast<std::int64_t>(sorted.blocks.size());
   reported_parallel_for({0, num_blocks, num_blocks}, progress, "even", [&](std::int64_t i) {
     const VertexBlock& block = sorted.blocks[static_cast<std::size_t>(i)];
-    const auto numbers = sorted.numbers_of(block.begin, block.end);
-    const auto narrowed = slabs[block.slab]->restricted_to(box_of(numbers));
+    const auto numbers = sorted.slice(block.begin, block.end);
+    const auto narrowed = slabs[block.slab]->restricted_to(probe_box(numbers));
     VertexReturn way(narrowed, step, surface);
     for (std::size_t k = 0; k < numbers.size(); k += kVerticesPerBatch)
       way.bring_back(numbers.subspan(k, std::min(kVerticesPerBatch, numbers.size() - k)), places);
@@ -255,8 +255,8 @@ class MeshRelaxation {
 
  private:
   bool is_inner(std::size_t v) const;
-  std::span<const std::uint32_t> neighbours_of(std::size_t v) const;
-  Vec3f move_of(std::span<const Vec3f> places, std::size_t v, const Vec3f& normal) const;
+  std::span<const std::uint32_t> neighbours(std::size_t v) const;
+  Vec3f vertex_move(std::span<const Vec3f> places, std::size_t v, const Vec3f& normal) const;
 
   std::vector<std::uint32_t> first_, neighbours_;  // the neighbours of one vertex after those of another
   std::vector<std::uint32_t> balance_;  // numbers of neighbours that follow less those that precede, mod 2^32

@@ -50,7 +50,7 @@ bool is_short_cycle(std::span<const Edge> edges) {
 
 // Finds out whether the directed edges (from, to) opposite a vertex form one cycle or one path. May sort them
 // by `from`.
-LinkKind kind_of_link(std::span<Edge> edges) {
+LinkKind link_kind(std::span<Edge> edges) {
   if (edges.empty()) return LinkKind::kNonManifold;
   if (is_short_cycle(std::span<const Edge>(edges))) return LinkKind::kCycle;
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.from < b.from; });
@@ -101,12 +101,13 @@ void ManifoldCheck::forget_components_below(std::uint32_t first) {
 }
 
 void ManifoldCheck::add_triangles(std::span<const Triangle> triangles) {
-  extend_links(chunks_of(triangles));
+  extend_links(split_into_chunks(triangles));
   report_.triangles += static_cast<std::int64_t>(triangles.size());
 }
 
 // Cuts triangles into chunks, which a thread can pass over where they name none of its vertices.
-std::vector<ManifoldCheck::Chunk> ManifoldCheck::chunks_of(std::span<const Triangle> triangles) const {
+std::vector<ManifoldCheck::Chunk> ManifoldCheck::split_into_chunks(
+    std::span<const Triangle> triangles) const {
   constexpr std::size_t kChunk = 1024;
   std::vector<Chunk> chunks((triangles.size() + kChunk - 1) / kChunk);
   constexpr std::int64_t kGrain = 8;
@@ -144,12 +145,12 @@ void ManifoldCheck::extend_links(const std::vector<Chunk>& chunks) {
   }
   parallel_for(-1, std::int64_t{count}, [&](std::int64_t i) {
     if (i < 0) return unite_corners(chunks);
-    extend_links_of(ranges[static_cast<std::size_t>(i)], chunks);
+    extend_range_links(ranges[static_cast<std::size_t>(i)], chunks);
   });
   for (const Range& range : ranges) others_.insert(others_.end(), range.others.begin(), range.others.end());
 }
 
-void ManifoldCheck::extend_links_of(Range& range, const std::vector<Chunk>& chunks) {
+void ManifoldCheck::extend_range_links(Range& range, const std::vector<Chunk>& chunks) {
   for (const Chunk& chunk : chunks) {
     if (chunk.greatest < range.first || chunk.least >= range.end) continue;
     const bool whole = chunk.least >= range.first && chunk.greatest < range.end;
@@ -193,13 +194,13 @@ void ManifoldCheck::settle_before() {
                    [](const OtherEdge& a, const OtherEdge& b) { return a.vertex < b.vertex; });
   const auto judge = [&](std::size_t at) {
     const std::size_t n = before_.counts[at], most = before_.links[at].edges.size();
-    if (n <= most) return kind_of_link(std::span(before_.links[at].edges).first(n));
+    if (n <= most) return link_kind(std::span(before_.links[at].edges).first(n));
     std::vector<Edge> all(before_.links[at].edges.begin(), before_.links[at].edges.end());
     const auto vertex = static_cast<std::uint32_t>(before_.first + at);
     auto other = std::lower_bound(others_.begin(), others_.end(), vertex,
                                   [](const OtherEdge& o, std::uint32_t v) { return o.vertex < v; });
     for (; other != others_.end() && other->vertex == vertex; ++other) all.push_back(other->edge);
-    return kind_of_link(std::span(all));
+    return link_kind(std::span(all));
   };
   std::vector<LinkKind> kinds(before_.counts.size());
   constexpr std::int64_t kGrain = 1024;

@@ -70,9 +70,9 @@ class ManifoldCheck : public MeshSink {
   };
 
   bool is_late(const Triangle& t) const { return std::min({t[0], t[1], t[2]}) < before_.first; }
-  std::vector<Chunk> chunks_of(std::span<const Triangle> triangles) const;
+  std::vector<Chunk> split_into_chunks(std::span<const Triangle> triangles) const;
   void extend_links(const std::vector<Chunk>& chunks);
-  void extend_links_of(Range& range, const std::vector<Chunk>& chunks);
+  void extend_range_links(Range& range, const std::vector<Chunk>& chunks);
   void add_to_link(std::uint32_t vertex, OppositeEdge edge, std::vector<OtherEdge>& others);
   void unite_corners(const std::vector<Chunk>& chunks);
   void settle_before();

@@ -36,14 +36,14 @@ std::uint32_t ComponentLabels::new_label() {
   return parent_.back();
 }
 
-std::uint32_t ComponentLabels::component_of(std::uint32_t label) const {
+std::uint32_t ComponentLabels::find_component(std::uint32_t label) const {
   while (parent_[label] != label) label = parent_[label];
   return label;
 }
 
 void ComponentLabels::unite(std::uint32_t a, std::uint32_t b) {
-  a = component_of(a);
-  b = component_of(b);
+  a = find_component(a);
+  b = find_component(b);
   if (a != b) parent_[std::max(a, b)] = std::min(a, b);
 }
 
@@ -115,13 +115,13 @@ ComponentChoice ComponentSizes::larger_than(double least_share) {
   settle();
   std::vector<double> volumes(volumes_.size(), 0.0);
   for (std::uint32_t label = 0; label < volumes.size(); ++label) {
-    volumes[labels_.component_of(label)] += volumes_[label];
+    volumes[labels_.find_component(label)] += volumes_[label];
   }
   double largest = 0.0;
   for (const double volume : volumes) largest = std::max(largest, std::fabs(volume));
   ComponentChoice choice;
   for (std::uint32_t label = 0; label < volumes.size(); ++label) {
-    const std::uint32_t component = labels_.component_of(label);
+    const std::uint32_t component = labels_.find_component(label);
     const bool keep = std::fabs(volumes[component]) >= least_share * largest;
     choice.keep.push_back(keep ? 1 : 0);
     if (!keep && component == label) ++choice.dropped_components;

@@ -21,11 +21,11 @@ namespace astrolith {
 class ComponentLabels {
  public:
   // The labels of the vertices of a batch. All triangles that follow the batch must be given. A component may
-  // have several labels, which component_of brings together.
+  // have several labels, which find_component brings together.
   std::vector<std::uint32_t> label(std::size_t num_vertices, std::span<const Triangle> triangles);
 
   // After the last batch: the lowest of the labels of a component, the same for all its labels.
-  std::uint32_t component_of(std::uint32_t label) const;
+  std::uint32_t find_component(std::uint32_t label) const;
   std::uint32_t num_labels() const { return static_cast<std::uint32_t>(parent_.size()); }
 
  private:

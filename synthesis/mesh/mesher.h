@@ -49,7 +49,7 @@ struct MeshTile {
 
 // The cells of a tile. Throws InputError for a tile that does not exist.
 template <int B>
-CellWindow window_of_tile(const SampleGrid& grid, MeshTile tile) {
+CellWindow tile_window(const SampleGrid& grid, MeshTile tile) {
   const std::int64_t layers = (grid.cells[2] + B - 1) / B;
   if (tile.count < 1 || tile.count > layers || tile.index < 0 || tile.index >= tile.count) {
     throw InputError("tile: there is no tile " + std::to_string(tile.index + 1) + " of " +
@@ -67,7 +67,7 @@ struct LayerRange {
 };
 // The first layer is the one that owns the samples in the lower side of the window.
 template <int B>
-LayerRange layers_of_window(const BlockGrid<B>& grid) {
+LayerRange window_layers(const BlockGrid<B>& grid) {
   return {std::max(grid.window.first[2] - 2, 0) / B, (grid.window.last[2] - 1) / B + 1};
 }
 
@@ -81,7 +81,7 @@ class LayeredMesher {
   }
 
   MeshStatistics run(const Progress& progress) {
-    const auto [first, end] = layers_of_window(grid_);
+    const auto [first, end] = window_layers(grid_);
     BlockLayer<B> two_below(grid_.blocks(0), grid_.blocks(1)), below = two_below, layer = two_below;
     for (int z = first; z < end; ++z) {
       make_layer(z, below, layer);
@@ -145,7 +145,7 @@ class LayeredMesher {
       LayerBlock<B>& block = layer.blocks[i];
       fill_sample_halo(find_owners(layer, below, block), block);
       take_signs(block);
-      return count_rows(grid_.window_of(block.x, block.y, z), block);
+      return count_rows(grid_.block_window(block.x, block.y, z), block);
     });
   }
 
@@ -165,7 +165,7 @@ class LayeredMesher {
     triangles_.resize(counts.triangles);
     for_each_block(layer, [&](std::size_t i) {
       LayerBlock<B>& block = layer.blocks[i];
-      const BlockWindow<B> window = grid_.window_of(block.x, block.y, z);
+      const BlockWindow<B> window = grid_.block_window(block.x, block.y, z);
       fill_vertex_halo(find_owners(layer, below, block), window, block);
       make_triangles(block, window, std::span(triangles_));
       return std::int64_t{0};
@@ -192,7 +192,7 @@ template <int B = kBlockCells, BlockField Field>
 MeshStatistics mesh_field(const Field& field, const Box& bounds, int resolution, MeshSink& sink,
                           const Progress& progress = {}, MeshTile tile = {}) {
   const SampleGrid grid = make_sample_grid(bounds, resolution);
-  return LayeredMesher<B, Field>(field, {grid, window_of_tile<B>(grid, tile), true}, sink).run(progress);
+  return LayeredMesher<B, Field>(field, {grid, tile_window<B>(grid, tile), true}, sink).run(progress);
 }
 
 // Meshes the part of the surface F = 0 that lies in a cube of side `size` around the origin of the field,
@@ -202,7 +202,7 @@ template <int B = kBlockCells, BlockField Field>
 MeshStatistics mesh_patch(const Field& field, double size, int resolution, MeshSink& sink,
                           const Progress& progress = {}) {
   const SampleGrid grid = make_patch_grid(size, resolution);
-  return LayeredMesher<B, Field>(field, {grid, window_of_patch(grid), false}, sink).run(progress);
+  return LayeredMesher<B, Field>(field, {grid, patch_window(grid), false}, sink).run(progress);
 }
 
 }  // namespace astrolith

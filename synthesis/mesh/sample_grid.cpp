@@ -59,6 +59,6 @@ SampleGrid make_patch_grid(double size, int resolution) {
   return grid;
 }
 
-CellWindow window_of_patch(const SampleGrid& grid) { return {{2, 2, 2}, grid.cells}; }
+CellWindow patch_window(const SampleGrid& grid) { return {{2, 2, 2}, grid.cells}; }
 
 }  // namespace astrolith

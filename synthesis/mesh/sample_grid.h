@@ -43,9 +43,9 @@ inline constexpr int kMaxResolution = 8192;
 SampleGrid make_sample_grid(const Box& bounds, int resolution);
 
 // A grid over a cube of side `size` around the origin, with `resolution` cells along its sides. One more
-// layer of cells below each lower side owns the samples in that side; window_of_patch leaves this layer out.
+// layer of cells below each lower side owns the samples in that side; patch_window leaves this layer out.
 // Throws InputError when the size is not positive and finite or the resolution is out of range.
 SampleGrid make_patch_grid(double size, int resolution);
-CellWindow window_of_patch(const SampleGrid& grid);
+CellWindow patch_window(const SampleGrid& grid);
 
 }  // namespace astrolith

@@ -14,7 +14,7 @@ struct Corners {
   Vec3d doubled_area() const { return cross(b - a, c - a); }
 };
 
-Corners corners_of(const TriangleMesh& mesh, const Triangle& triangle) {
+Corners triangle_corners(const TriangleMesh& mesh, const Triangle& triangle) {
   return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
 }
 
@@ -43,7 +43,7 @@ Polygon cut(const Polygon& polygon, int axis, double limit, double sign) {
   return part;
 }
 
-double area_of(const Polygon& polygon) {
+double polygon_area(const Polygon& polygon) {
   Vec3d doubled;
   for (std::size_t i = 1; i + 1 < polygon.size; ++i) {
     doubled += cross(polygon.corners[i] - polygon.corners[0], polygon.corners[i + 1] - polygon.corners[0]);
@@ -63,7 +63,7 @@ ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::
   double sum = 0.0;
   std::vector<Box> boxes;
   for (const Triangle& triangle : mesh_.triangles) {
-    const Corners t = corners_of(mesh_, triangle);
+    const Corners t = triangle_corners(mesh_, triangle);
     if (holds(within, (1.0 / 3.0) * (t.a + t.b + t.c))) sum += 0.5 * norm(t.doubled_area());
     areas_.push_back(sum);
     Box& box = boxes.emplace_back();
@@ -77,7 +77,7 @@ ProbedSurface::Point ProbedSurface::point(int index) const {
                    kRootOfThree = 0.7320508075688772;
   const auto found = std::upper_bound(areas_.begin(), areas_.end(), even(index, kGolden) * areas_.back());
   const auto i = static_cast<std::size_t>(std::min(found, areas_.end() - 1) - areas_.begin());
-  const Corners t = corners_of(mesh_, mesh_.triangles[i]);
+  const Corners t = triangle_corners(mesh_, mesh_.triangles[i]);
   double u = even(index, kRootOfTwo), v = even(index, kRootOfThree);
   if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
   const Vec3d normal = t.doubled_area();
@@ -92,11 +92,11 @@ double ProbedSurface::largest_share(double height) const {
   }
   if (empty() || !(bounds.extent().z > height)) return 1.0;
   const double bin = bounds.extent().z / kBins;
-  const auto bin_of = [&](double z) { return std::clamp(int((z - bounds.min.z) / bin), 0, kBins - 1); };
+  const auto bin_at = [&](double z) { return std::clamp(int((z - bounds.min.z) / bin), 0, kBins - 1); };
   std::array<double, kBins> profile{};
   for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-    const Corners t = corners_of(mesh_, mesh_.triangles[i]);
-    const int first = bin_of(std::min({t.a.z, t.b.z, t.c.z})), last = bin_of(std::max({t.a.z, t.b.z, t.c.z}));
+    const Corners t = triangle_corners(mesh_, mesh_.triangles[i]);
+    const int first = bin_at(std::min({t.a.z, t.b.z, t.c.z})), last = bin_at(std::max({t.a.z, t.b.z, t.c.z}));
     const double area = areas_[i] - (i > 0 ? areas_[i - 1] : 0.0);
     for (int k = first; k <= last; ++k) profile[static_cast<std::size_t>(k)] += area / (last - first + 1);
   }
@@ -113,14 +113,14 @@ double ProbedSurface::largest_share(double height) const {
 double ProbedSurface::area_within(const Box& box) const {
   double area = 0.0;
   for (const std::uint32_t number : tree_.touching(box)) {
-    const Corners t = corners_of(mesh_, mesh_.triangles[number]);
+    const Corners t = triangle_corners(mesh_, mesh_.triangles[number]);
     Polygon part;
     for (const Vec3d& p : {t.a, t.b, t.c}) part.add(p);
     for (int axis = 0; axis < 3; ++axis) {
       part = cut(part, axis, along(box.min, axis), 1.0);
       part = cut(part, axis, along(box.max, axis), -1.0);
     }
-    area += area_of(part);
+    area += polygon_area(part);
   }
   return area;
 }

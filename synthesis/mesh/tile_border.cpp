@@ -27,7 +27,7 @@ void rotate_to_least(Word& word) {
   std::rotate(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(std::min(a, b)), word.end());
 }
 
-std::string hash_of_loops(float z, const std::vector<Word>& loops) {
+std::string hash_loops(float z, const std::vector<Word>& loops) {
   Sha256 hash;
   hash.update(&z, sizeof z);
   for (const Word& loop : loops) {
@@ -82,7 +82,7 @@ bool PlaneEdges::keep_open_edges() {
   return true;
 }
 
-std::uint64_t PlaneEdges::place_of(std::uint32_t vertex) const {
+std::uint64_t PlaneEdges::plane_place(std::uint32_t vertex) const {
   const auto found =
       std::lower_bound(vertices_.begin(), vertices_.end(), vertex,
                        [](const PlaneVertex& v, std::uint32_t number) { return v.number < number; });
@@ -101,7 +101,7 @@ std::vector<PlaneEdges::Loop> PlaneEdges::loops() const {
     while (passed[at] == 0) {
       passed[at] = 1;
       const auto [from, to] = edges_[at];
-      loop.push_back(place_of(from));
+      loop.push_back(plane_place(from));
       at = static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), Edge{to, 0}) -
                                     edges_.begin());
       if (at == edges_.size() || edges_[at][0] != to) return {};
@@ -119,7 +119,7 @@ std::optional<TileSide> PlaneEdges::side() {
   const std::vector<Loop> all = loops();
   if (all.empty() && !edges_.empty()) return std::nullopt;
   return TileSide{z_, static_cast<std::int64_t>(edges_.size()), static_cast<std::int64_t>(all.size()),
-                  hash_of_loops(z_, all)};
+                  hash_loops(z_, all)};
 }
 
 TileBorder::TileBorder(std::optional<float> lower, std::optional<float> upper) {

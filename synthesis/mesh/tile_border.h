@@ -72,7 +72,7 @@ class PlaneEdges {
   bool holds(std::uint32_t vertex) const;
   bool keep_open_edges();
   std::vector<Loop> loops() const;
-  std::uint64_t place_of(std::uint32_t vertex) const;
+  std::uint64_t plane_place(std::uint32_t vertex) const;
 
   float z_;
   bool is_lower_;

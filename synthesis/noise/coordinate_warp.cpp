@@ -29,7 +29,7 @@ CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const 
   CoordinateWarp made;
   made.low = to_float(reached.min);
   made.high = to_float(reached.max);
-  const double farthest = NoiseFrame::farthest_of(largest_coordinate(reached), frame.origin);
+  const double farthest = NoiseFrame::farthest_distance(largest_coordinate(reached), frame.origin);
   made.detail.finest = 1.0 / (warp.frequency * portable::whole_power(warp.lacunarity, warp.octaves - 1));
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     std::vector<NoiseOctave> octaves = make_octaves(warp.frequency, warp.amplitude, warp.octaves, warp.gain,

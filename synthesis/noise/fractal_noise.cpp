@@ -67,7 +67,7 @@ Vec3d placed(const FractalNoise& noise, const Vec3d& bias, const Vec3d& p) {
           double{noise.scale.z} * p.z + bias.z};
 }
 
-NoiseDetail detail_of(const FractalLayer& layer, const FractalNoise& noise, std::size_t kept_octaves) {
+NoiseDetail noise_detail(const FractalLayer& layer, const FractalNoise& noise, std::size_t kept_octaves) {
   const double scale =
       std::max({std::fabs(layer.scale.x), std::fabs(layer.scale.y), std::fabs(layer.scale.z)});
   NoiseDetail detail;
@@ -101,8 +101,8 @@ FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer
   const Vec3d origin = frame.moved ? placed(noise, layer.bias, frame.origin) : Vec3d{};
   std::vector<NoiseOctave> octaves =
       make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves, layer.gain,
-                   layer.lacunarity, {layer_seed}, NoiseFrame::farthest_of(largest, origin));
-  noise.detail = detail_of(layer, noise, octaves.size());
+                   layer.lacunarity, {layer_seed}, NoiseFrame::farthest_distance(largest, origin));
+  noise.detail = noise_detail(layer, noise, octaves.size());
   if (frame.moved) octaves = local_octaves(layer.noise, octaves, origin);
   noise.octaves = arrays.add(octaves);
   double amplitude = layer.amplitude * layer.weight;

@@ -47,12 +47,12 @@ ASTROLITH_KERNEL std::uint32_t short_lattice_hash(std::uint32_t point) {
 // Returns a if the top bit of `sign` is set, else b.
 ASTROLITH_KERNEL float choose_by_sign(std::uint32_t sign, float a, float b) {
   const std::int32_t mask = static_cast<std::int32_t>(sign) >> 31;
-  return math::float_of((math::bits_of(a) & mask) | (math::bits_of(b) & ~mask));
+  return math::from_bits((math::to_bits(a) & mask) | (math::to_bits(b) & ~mask));
 }
 
 // Returns v, with its sign changed if the top bit of `sign` is set.
 ASTROLITH_KERNEL float flip_sign(float v, std::uint32_t sign) {
-  return math::float_of(math::bits_of(v) ^ static_cast<std::int32_t>(sign & 0x80000000u));
+  return math::from_bits(math::to_bits(v) ^ static_cast<std::int32_t>(sign & 0x80000000u));
 }
 
 // The dot product of (x, y, z) with one of the twelve edge directions of a cube. The top four bits g of the
@@ -65,7 +65,7 @@ ASTROLITH_KERNEL float gradient_product(std::uint32_t hash, float x, float y, fl
   return flip_sign(u, hash << 3) + flip_sign(v, hash << 2);
 }
 
-ASTROLITH_KERNEL Vec3f gradient_of(std::uint32_t hash) {
+ASTROLITH_KERNEL Vec3f lattice_gradient(std::uint32_t hash) {
   return {gradient_product(hash, 1.0f, 0.0f, 0.0f), gradient_product(hash, 0.0f, 1.0f, 0.0f),
           gradient_product(hash, 0.0f, 0.0f, 1.0f)};
 }

@@ -35,9 +35,9 @@ struct NoiseFrame {
       : domain(local_domain), origin(patch_origin), moved(true) {}
 
   // Cells are resolved if the quotient of this distance and their side is at most kLargestCell.
-  double farthest() const { return farthest_of(largest_coordinate(domain), origin); }
+  double farthest() const { return farthest_distance(largest_coordinate(domain), origin); }
   // Returns farthest() of a frame with this origin and this largest coordinate, in any unit.
-  static double farthest_of(double largest, const Vec3d& origin) {
+  static double farthest_distance(double largest, const Vec3d& origin) {
     return std::max(largest, largest_coordinate(Box{origin, origin}) * (kLargestCell / kFarthestCell));
   }
 };

@@ -100,7 +100,7 @@ double sum_bound(std::span<const NoiseOctave> octaves) {
 double slope_bound(Noise noise, std::span<const NoiseOctave> octaves) {
   double bound = 0.0;
   for (const NoiseOctave& o : octaves) {
-    bound += range_of(noise).slope *
+    bound += noise_range(noise).slope *
              std::fabs(static_cast<double>(o.amplitude) * static_cast<double>(o.frequency));
   }
   return bound;

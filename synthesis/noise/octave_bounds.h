@@ -68,7 +68,7 @@ ASTROLITH_HD inline ModulatedSum with_modulated_octave(Noise noise, const NoiseO
 struct NoiseRange {
   double low, high, slope;
 };
-ASTROLITH_HD inline NoiseRange range_of(Noise noise) {
+ASTROLITH_HD inline NoiseRange noise_range(Noise noise) {
   constexpr double kF1 = kWorleyMeanF1, kF2 = kWorleyMeanF2, kSlope = 1.0 / kWorleyFarthest;
   switch (noise) {
     case Noise::kSimplex:
@@ -88,7 +88,7 @@ ASTROLITH_HD inline NoiseRange range_of(Noise noise) {
 // small beside the features of the noise, the value at the centre and the Lipschitz bound are tighter than
 // the range.
 ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
-  const NoiseRange range = range_of(noise);
+  const NoiseRange range = noise_range(noise);
   const double f = static_cast<double>(octave.frequency);
   const double rounding = 1e-6 * f * largest_coordinate(box);  // error of a float coordinate, cells
   const double spread = range.slope * (0.5 * f * norm(box.extent()) + rounding) + 1e-5;

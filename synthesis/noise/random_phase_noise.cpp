@@ -70,7 +70,7 @@ ASTROLITH_SIMD_CLONES void add_wave(const Wave& wave, float randomness, int n, c
   }
 }
 
-double coherence_of(double randomness) {
+double phase_coherence(double randomness) {
   const double x = std::numbers::pi * randomness;
   return x > 0.0 ? portable::whole_power(portable::sin(x) / x, 2) : 1.0;
 }
@@ -140,7 +140,7 @@ RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, i
   noise.high = to_float(frame.domain.max);
   noise.inverse_cell = static_cast<float>(1.0 / layer.cell_size);
   noise.randomness = static_cast<float>(layer.randomness);
-  noise.coherence = static_cast<float>(coherence_of(layer.randomness));
+  noise.coherence = static_cast<float>(phase_coherence(layer.randomness));
   noise.clip = static_cast<float>(kClip * layer.height_rms);
   noise.seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   noise.height_bound = static_cast<double>(noise.clip);

@@ -16,7 +16,7 @@ struct SimplexCell {
   std::uint32_t corner[4];
 };
 
-ASTROLITH_KERNEL float one_where(std::int32_t mask) { return math::float_of(0x3f800000 & mask); }
+ASTROLITH_KERNEL float one_where(std::int32_t mask) { return math::from_bits(0x3f800000 & mask); }
 
 ASTROLITH_KERNEL SimplexCell simplex_cell(float x, float y, float z, std::uint32_t seed) {
   constexpr float kUnskew = 1.0f / 6.0f;
@@ -26,8 +26,8 @@ ASTROLITH_KERNEL SimplexCell simplex_cell(float x, float y, float z, std::uint32
   const float x0 = x - (i - unskew), y0 = y - (j - unskew), z0 = z - (k - unskew);
 
   // The second corner steps along the largest coordinate, the third along the two largest.
-  const std::int32_t below_y = math::bits_of(x0 - y0) >> 31, below_z = math::bits_of(x0 - z0) >> 31,
-                     y_below_z = math::bits_of(y0 - z0) >> 31;
+  const std::int32_t below_y = math::to_bits(x0 - y0) >> 31, below_z = math::to_bits(x0 - z0) >> 31,
+                     y_below_z = math::to_bits(y0 - z0) >> 31;
   const std::int32_t i1 = ~below_y & ~below_z, j1 = below_y & ~y_below_z, k1 = below_z & y_below_z;
   const std::int32_t i2 = ~(below_y & below_z), j2 = below_y | ~y_below_z, k2 = below_z | y_below_z;
   const auto stepped = [](std::int32_t along_x, std::int32_t along_y, std::int32_t along_z) {
@@ -72,7 +72,7 @@ ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t se
 // Adds the contribution of one corner, and its gradient fade^4 g - 8 fade^3 (g.d) d.
 ASTROLITH_KERNEL void add_simplex_corner(std::uint32_t corner, const Vec3f& d, NoiseSample& sum) {
   const std::uint32_t hash = lattice_hash(corner);
-  const Vec3f g = gradient_of(hash);
+  const Vec3f g = lattice_gradient(hash);
   const float fade = simplex_fade(d);
   const float fade2 = fade * fade, fade4 = fade2 * fade2;
   const float product = gradient_product(hash, d.x, d.y, d.z);

@@ -26,7 +26,7 @@ struct WorleyDistances {
 
 // A float in [1, 2) from 23 bits.
 ASTROLITH_KERNEL float one_to_two(std::uint32_t bits) {
-  return math::float_of(static_cast<std::int32_t>((bits & 0x007fffffu) | 0x3f800000u));
+  return math::from_bits(static_cast<std::int32_t>((bits & 0x007fffffu) | 0x3f800000u));
 }
 
 // The squared distance from a point to the feature point of a cell. The hash of the cell gives m in [1, 2)^3,
@@ -51,7 +51,7 @@ ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std
   const float fx = x - i + kOffset, fy = y - j + kOffset, fz = z - k + kOffset;
   const std::uint32_t cell = lattice_point(i, j, k, seed);
   // The bits of positive floats, as integers, have the same order. Compilers vectorise integer minima well.
-  std::int32_t nearest = math::bits_of(kWorleyFarthest * kWorleyFarthest), second = nearest;
+  std::int32_t nearest = math::to_bits(kWorleyFarthest * kWorleyFarthest), second = nearest;
   ASTROLITH_UNROLL
   for (int c = -1; c <= 1; ++c) {
     ASTROLITH_UNROLL
@@ -61,14 +61,14 @@ ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std
         const std::uint32_t neighbour = cell + static_cast<std::uint32_t>(a) * kLatticeX +
                                         static_cast<std::uint32_t>(b) * kLatticeY +
                                         static_cast<std::uint32_t>(c) * kLatticeZ;
-        const std::int32_t d = math::bits_of(feature_distance(
+        const std::int32_t d = math::to_bits(feature_distance(
             neighbour, fx - static_cast<float>(a), fy - static_cast<float>(b), fz - static_cast<float>(c)));
         if constexpr (kSecond) second = std::min(second, std::max(nearest, d));
         nearest = std::min(nearest, d);
       }
     }
   }
-  return {math::float_of(nearest), math::float_of(second)};
+  return {math::from_bits(nearest), math::from_bits(second)};
 }
 
 // The three noises at (x, y, z), where |x|, |y|, |z| <= 2^20, in units of kWorleyFarthest cells. Each has

@@ -53,7 +53,7 @@ std::vector<Vec3<float>> sequential_colors(std::span<const double> values, doubl
 }
 
 unsigned char srgb_byte(float linear) {
-  return static_cast<unsigned char>(255.0 * srgb_of_linear(std::clamp(double{linear}, 0.0, 1.0)) + 0.5);
+  return static_cast<unsigned char>(255.0 * linear_to_srgb(std::clamp(double{linear}, 0.0, 1.0)) + 0.5);
 }
 
 }  // namespace astrolith

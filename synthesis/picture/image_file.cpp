@@ -33,7 +33,7 @@ bool begins_as_png(const std::vector<std::uint8_t>& bytes) {
 
 // A decoder of bytes that outlive it. What a file says beside its pixels may be damaged, and takes at most
 // kMostNotes bytes, unpacked.
-PngDecoder decoder_of(const std::vector<std::uint8_t>& bytes) {
+PngDecoder make_decoder(const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kMostNotes = 1 << 20;
   PngDecoder decoder(spng_ctx_new(0));
   const bool ready = decoder != nullptr &&
@@ -51,7 +51,7 @@ PngDecoder decoder_of(const std::vector<std::uint8_t>& bytes) {
 
 // All pixels as red, green, blue and alpha. libspng has no 16-bit format without alpha that takes every kind
 // of file.
-std::vector<std::uint16_t> rgba_of(spng_ctx* decoder, std::size_t pixels, const std::string& file) {
+std::vector<std::uint16_t> decode_rgba(spng_ctx* decoder, std::size_t pixels, const std::string& file) {
   std::vector<std::uint16_t> rgba(4 * pixels);
   int status = spng_decode_image(decoder, rgba.data(), rgba.size() * sizeof rgba[0], SPNG_FMT_RGBA16, 0);
   if (status == 0) status = spng_decode_chunks(decoder);
@@ -159,7 +159,7 @@ void set_geo_tags(TIFF* tiff, int width, int height, double pixel, const std::st
 }
 
 // What GDAL reads the names of bands from.
-std::string metadata_of(const std::vector<std::string>& bands) {
+std::string band_metadata(const std::vector<std::string>& bands) {
   std::string text = "<GDALMetadata>\n";
   for (std::size_t k = 0; k < bands.size(); ++k) {
     text += "  <Item name=\"DESCRIPTION\" sample=\"" + std::to_string(k) + "\" role=\"description\">" +
@@ -196,7 +196,7 @@ std::vector<Value> first_channels(const RgbaImage16& image, std::size_t channels
   return values;
 }
 
-std::uint8_t byte_of(std::uint16_t value) { return static_cast<std::uint8_t>((value + 128u) / 257u); }
+std::uint8_t to_byte(std::uint16_t value) { return static_cast<std::uint8_t>((value + 128u) / 257u); }
 
 }  // namespace
 
@@ -204,7 +204,7 @@ GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::strin
                         int most_side) {
   if (!begins_as_png(bytes))
     throw InputError(file + ": is no PNG; convert it, or let fit_gabor --model exemplar write one");
-  const PngDecoder decoder = decoder_of(bytes);
+  const PngDecoder decoder = make_decoder(bytes);
   spng_ihdr header{};
   if (const int status = spng_get_ihdr(decoder.get(), &header); status != 0) refuse(file, status);
   const auto [least, most] = std::minmax(header.width, header.height);
@@ -214,7 +214,7 @@ GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::strin
                      std::to_string(most_side));
   }
   const std::size_t pixels = std::size_t{header.width} * header.height;
-  const std::vector<std::uint16_t> rgba = rgba_of(decoder.get(), pixels, file);
+  const std::vector<std::uint16_t> rgba = decode_rgba(decoder.get(), pixels, file);
   GreyPng png{static_cast<int>(header.width), static_cast<int>(header.height), {}};
   png.values.reserve(pixels);
   if (!is_grey(header)) png.rgb.reserve(3 * pixels);
@@ -222,7 +222,7 @@ GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::strin
     if (is_grey(header)) {
       png.values.push_back(rgba[i]);
     } else {
-      png.values.push_back(luma_of(rgba[i], rgba[i + 1], rgba[i + 2]));
+      png.values.push_back(rgb_luma(rgba[i], rgba[i + 1], rgba[i + 2]));
       png.rgb.insert(png.rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
     }
   }
@@ -230,11 +230,11 @@ GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::strin
 }
 
 RgbImage opaque_bytes(const RgbaImage16& image) {
-  return {image.width, image.height, first_channels<std::uint8_t>(image, 3, byte_of)};
+  return {image.width, image.height, first_channels<std::uint8_t>(image, 3, to_byte)};
 }
 
 std::vector<std::uint8_t> rgba_bytes(const RgbaImage16& image) {
-  return first_channels<std::uint8_t>(image, 4, byte_of);
+  return first_channels<std::uint8_t>(image, 4, to_byte);
 }
 
 void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::filesystem::path& file) {
@@ -245,7 +245,7 @@ void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::f
     const auto values = first_channels<std::uint16_t>(image, channels, [](std::uint16_t v) { return v; });
     return write_png({image.width, image.height, 16, type}, std::as_bytes(std::span(values)), file);
   }
-  const auto bytes = first_channels<std::uint8_t>(image, channels, byte_of);
+  const auto bytes = first_channels<std::uint8_t>(image, channels, to_byte);
   constexpr int kFast = 4;  // a tenth of a preview's time less than 6, for 7 % more bytes
   write_png({image.width, image.height, 8, type, kFast}, std::as_bytes(std::span(bytes)), file);
 }
@@ -263,11 +263,11 @@ std::string png_bytes(std::span<const Value> values, int width, int height, int 
 
 }  // namespace
 
-std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels) {
+std::string encode_png(std::span<const std::uint8_t> values, int width, int height, int channels) {
   return png_bytes(values, width, height, channels);
 }
 
-std::string png_of(std::span<const std::uint16_t> values, int width, int height, int channels) {
+std::string encode_png(std::span<const std::uint16_t> values, int width, int height, int channels) {
   return png_bytes(values, width, height, channels);
 }
 
@@ -336,7 +336,7 @@ void write_geotiff(std::span<const float> values, int width, int height, double 
           TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, static_cast<int>(bands.size()));
           TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(unspecified.size()), unspecified.data());
         }
-        if (!bands.empty()) TIFFSetField(tiff, kMetadata, metadata_of(bands).c_str());
+        if (!bands.empty()) TIFFSetField(tiff, kMetadata, band_metadata(bands).c_str());
         TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
       });
 }

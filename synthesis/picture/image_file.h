@@ -51,8 +51,8 @@ void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::f
 
 // The bytes of a PNG of 8 or of 16 bits (1 channel: grey, 3: RGB), for a file that holds images.
 // values: (height x width x channels)
-std::string png_of(std::span<const std::uint8_t> values, int width, int height, int channels);
-std::string png_of(std::span<const std::uint16_t> values, int width, int height, int channels = 1);
+std::string encode_png(std::span<const std::uint8_t> values, int width, int height, int channels);
+std::string encode_png(std::span<const std::uint16_t> values, int width, int height, int channels = 1);
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file);
 

@@ -78,7 +78,7 @@ void draw_text(RgbaImage16& image, int left, int top, int dot, std::string_view 
 constexpr int kLeastMarkedWidth = 160, kLeastMarkedHeight = 120;
 constexpr int kStripDots = 24, kBarTop = 4, kBarDots = 6, kTextTop = 13;  // dots from the top of the strip
 
-int dot_of(int height) { return 1 + height / 600; }
+int dot_side(int height) { return 1 + height / 600; }
 
 std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
 
@@ -104,7 +104,7 @@ bool has_length_bar(const PreviewOptions& options) {
 class MarksPainter {
  public:
   MarksPainter(RgbaImage16& image, const PreviewOptions& options, int strip)
-      : image_(image), options_(options), dot_(dot_of(image.height)), top_(image.height - strip) {
+      : image_(image), options_(options), dot_(dot_side(image.height)), top_(image.height - strip) {
     const bool light = !options.transparent && options.background.y > 0.2f;
     ink_ = light ? PictureInk{40, 40, 40} : PictureInk{235, 235, 235};
   }
@@ -204,11 +204,11 @@ ValueRange value_range(std::span<const double> values) {
   std::erase_if(sorted, [](double value) { return !std::isfinite(value); });
   if (sorted.empty()) sorted = {0.0};
   std::sort(sorted.begin(), sorted.end());
-  const double low = quantile_of_sorted(sorted, 0.01), high = quantile_of_sorted(sorted, 0.99);
+  const double low = sorted_quantile(sorted, 0.01), high = sorted_quantile(sorted, 0.99);
   return {low, high > low ? high : low + 1.0, sorted.front(), sorted.back()};
 }
 
-std::string title_of_column(const std::string& name) {
+std::string column_title(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kUnits{{{"_m_s2", "m/s2"},
                                                                                  {"_J_kg", "J/kg"},
                                                                                  {"_deg", "deg"},
@@ -233,7 +233,7 @@ void draw_caption(RgbaImage16& image, int left, int top, const std::string& text
 
 int marks_height(const PreviewOptions& options) {
   if (options.width < kLeastMarkedWidth || options.height < kLeastMarkedHeight) return 0;
-  return options.marks.values || has_length_bar(options) ? kStripDots * dot_of(options.height) : 0;
+  return options.marks.values || has_length_bar(options) ? kStripDots * dot_side(options.height) : 0;
 }
 
 namespace {

@@ -28,7 +28,7 @@ ValueRange value_range(std::span<const double> values);
 
 // "slope [deg]" for the column slope_deg, "effective gravity [m/s2]" for effective_gravity_m_s2; names
 // without a known unit keep their words.
-std::string title_of_column(const std::string& name);
+std::string column_title(const std::string& name);
 
 // A word beside a place of the mesh, in the views that see the place.
 struct PlaceLabel {

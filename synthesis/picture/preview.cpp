@@ -211,7 +211,7 @@ class SrgbTable {
   SrgbTable() {
     for (int i = 0; i <= kSteps + 1; ++i) {
       const double root = std::min(1.0, static_cast<double>(i) / kSteps);
-      values_.push_back(static_cast<float>(65535.0 * srgb_of_linear(root * root)));
+      values_.push_back(static_cast<float>(65535.0 * linear_to_srgb(root * root)));
     }
   }
   std::uint16_t operator()(float linear) const {

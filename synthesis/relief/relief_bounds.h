@@ -40,8 +40,8 @@ struct ReliefPart {
 struct ReliefTilePair {
   std::int32_t lower, upper;
 };
-ASTROLITH_HD inline ReliefTilePair tiles_of_part(std::int32_t tile, const ReliefSplit* splits,
-                                                 const ReliefPart::Along& part) {
+ASTROLITH_HD inline ReliefTilePair part_tiles(std::int32_t tile, const ReliefSplit* splits,
+                                              const ReliefPart::Along& part) {
   if (tile >= 0) return {tile, tile};
   const ReliefSplit& split = splits[-1 - tile];
   constexpr double kRounding = 1e-4;  // spacings
@@ -51,7 +51,7 @@ ASTROLITH_HD inline ReliefTilePair tiles_of_part(std::int32_t tile, const Relief
   return {part.w.low > high ? split.upper : split.lower, part.w.high < low ? split.lower : split.upper};
 }
 
-// Whether all points of a part belong to the sheet of a tile in full (reach_of_sheet).
+// Whether all points of a part belong to the sheet of a tile in full (sheet_reach).
 ASTROLITH_HD inline bool reaches_part(const ReliefSheet& s, const ReliefPart::Along& part) {
   constexpr double kRounding = 1e-4;  // spacings
   const Interval by_u = scaled(s.slope_u, part.u), by_v = scaled(s.slope_v, part.v);
@@ -91,8 +91,8 @@ ASTROLITH_HD inline void extend_codes(const std::uint32_t* words, const Interval
 
 // A bound of how the sum of word_value(word) over a tile changes from the middle of a part on.
 template <class WordValue>
-ASTROLITH_HD double change_of_sum(const std::uint32_t* words, const Interval& u, const Interval& v,
-                                  const WordValue& word_value) {
+ASTROLITH_HD double sum_change(const std::uint32_t* words, const Interval& u, const Interval& v,
+                               const WordValue& word_value) {
   const ReliefPlacesAlong row = places_along(u), column = places_along(v);
   const auto at = [&](std::int32_t i, std::int32_t j) { return word_value(words[j * kReliefTileSide + i]); };
   double along_u = 0.0, along_v = 0.0;
@@ -119,7 +119,7 @@ ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& a
   bool one_tile = true, in_full = true;
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
-    const ReliefTilePair pair = axis_tiles[a] = tiles_of_part(tiles[a], arrays[n.splits], at);
+    const ReliefTilePair pair = axis_tiles[a] = part_tiles(tiles[a], arrays[n.splits], at);
     if (pair.lower == 0 && pair.upper == 0) continue;  // empty
     all.weight = 0xffff;
     extend_codes(words + kReliefTileSize * pair.lower, at.u, at.v, all);
@@ -141,9 +141,9 @@ ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& a
   for (int a = 0; a < 3; ++a) {
     const ReliefPart::Along at = part.along(a);
     const std::uint32_t* tile_words = words + kReliefTileSize * axis_tiles[a].lower;
-    weight -= change_of_sum(tile_words, at.u, at.v,
-                            [](std::uint32_t word) { return static_cast<double>(word >> 16); });
-    change += change_of_sum(tile_words, at.u, at.v, [&](std::uint32_t word) {
+    weight -= sum_change(tile_words, at.u, at.v,
+                         [](std::uint32_t word) { return static_cast<double>(word >> 16); });
+    change += sum_change(tile_words, at.u, at.v, [&](std::uint32_t word) {
       const double height = double{n.low} + double{n.step} * static_cast<double>(word & 0xffffu);
       return static_cast<double>(word >> 16) * (height - middle);
     });

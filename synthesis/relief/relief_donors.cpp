@@ -27,7 +27,7 @@ Vec3d moved_along(const Vec3d& p, const Box& from, const Box& to) {
 }
 
 // The rank of each value among all, from 0 up to 1.
-std::vector<double> ranks_of(const std::vector<double>& values) {
+std::vector<double> find_ranks(const std::vector<double>& values) {
   std::vector<std::uint32_t> order(values.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
@@ -46,7 +46,7 @@ ReliefDonors::ReliefDonors(const ReliefPatches& patches, const std::vector<Relie
       from_(box_around(anchors)),
       to_(box_around(patches.anchors())),
       reach_(reach * to_.diagonal()),
-      ranks_(ranks_of(patches.squares_around())) {
+      ranks_(find_ranks(patches.squares_around())) {
   for (const ReliefAnchor& anchor : patches.anchors()) {
     if (fill && anchor.unseen) unseen_.push_back(anchor.at);
   }
@@ -92,8 +92,8 @@ std::vector<ReliefDonor> ReliefDonors::candidates(const ReliefAnchor& anchor, st
   std::vector<ReliefDonor> donors;
   for (const auto& [cost, place] : drawn) {
     const auto number = static_cast<std::uint32_t>(donors.size());
-    donors.push_back(
-        {anchor_at(patches_.points(), place), turn_of(hash_append(hash_append(hash, kMostDraws), number))});
+    donors.push_back({anchor_at(patches_.points(), place),
+                      hash_to_turn(hash_append(hash_append(hash, kMostDraws), number))});
   }
   return donors;
 }

@@ -21,7 +21,7 @@ std::size_t next(std::size_t angle) { return angle + 1 == kAll ? 0 : angle + 1; 
 std::size_t before(std::size_t angle) { return angle == 0 ? kAll - 1 : angle - 1; }
 
 // The angle of a point in cells, 0 <= angle <= kAll.
-double angle_of(double x, double y) {
+double angle_step(double x, double y) {
   const double angle = portable::atan2(y, x) / kAngle;
   return angle < 0.0 ? angle + static_cast<double>(kAll) : angle;
 }
@@ -38,11 +38,11 @@ struct SeamCell {
 };
 using Column = std::array<SeamCell, kSeamRings>;
 
-std::vector<Column> cells_of(const std::vector<SeamPoint>& points) {
+std::vector<Column> make_seam_cells(const std::vector<SeamPoint>& points) {
   std::vector<Column> sums(kAll), cells(kAll);
   for (const SeamPoint& p : points) {
     const auto ring = static_cast<std::size_t>(std::sqrt(p.x * p.x + p.y * p.y) * kSeamRings);
-    const auto angle = std::min(static_cast<std::size_t>(angle_of(p.x, p.y)), kAll - 1);
+    const auto angle = std::min(static_cast<std::size_t>(angle_step(p.x, p.y)), kAll - 1);
     if (ring < kSeamRings) sums[angle][ring].add(1.0, {1.0, p.laid ? 1.0 : 0.0, p.laid ? p.mismatch : 0.0});
   }
   for (std::size_t a = 0; a < kAll; ++a) {
@@ -182,7 +182,7 @@ class PatchLaying {
   double agreeing(std::uint32_t place) const { return laid_[place].sum() - double{laid_[place].height[0]}; }
 
   // Some of the points that have been laid already.
-  std::vector<PatchPoint> overlap_of(const std::vector<PatchPoint>& around) const {
+  std::vector<PatchPoint> find_overlap(const std::vector<PatchPoint>& around) const {
     constexpr std::size_t kEnough = 256;
     std::vector<PatchPoint> overlap, some;
     for (const PatchPoint& p : around) {
@@ -195,7 +195,7 @@ class PatchLaying {
 
   std::size_t most_agreeing(const std::vector<PatchPoint>& around,
                             const std::vector<ReliefDonor>& candidates) const {
-    const std::vector<PatchPoint> overlap = overlap_of(around);
+    const std::vector<PatchPoint> overlap = find_overlap(around);
     std::vector<double> costs(candidates.size(), 0.0);
     parallel_for(0, static_cast<std::int64_t>(candidates.size()), [&](std::int64_t number) {
       const auto c = static_cast<std::size_t>(number);
@@ -231,7 +231,7 @@ class PatchLaying {
     return patch;
   }
 
-  ReliefSeam seam_of(const std::vector<LaidPoint>& patch) const {
+  ReliefSeam find_seam(const std::vector<LaidPoint>& patch) const {
     const double scale = 1.0 / patches_.anchor_spacing().radius();
     std::vector<SeamPoint> points;
     for (const LaidPoint& p : patch) {
@@ -249,7 +249,7 @@ class PatchLaying {
     constexpr double kMargin = 0.13;  // of 1 - d^2: beyond all seams
     const AnchorSpacing& apart = patches_.anchor_spacing();
     const double scale = 1.0 / apart.radius();
-    const ReliefSeam seam = seam_of(patch);
+    const ReliefSeam seam = find_seam(patch);
     for (std::size_t b = 0; b < kReliefBands; ++b) {
       const double width = std::min(kSeamWidths[b] * apart.edge * scale, 0.4);
       const ReliefSeam smooth = seam.smoothed(0.5 * width);
@@ -278,7 +278,7 @@ class PatchLaying {
 }  // namespace
 
 ReliefSeam::ReliefSeam(const std::vector<SeamPoint>& points) {
-  const SeamCosts costs(cells_of(points));
+  const SeamCosts costs(make_seam_cells(points));
   ClosedSeam best;
   for (std::size_t first = kCuts; first-- > 0;) {
     const ClosedSeam seam = best_from(costs, first);
@@ -302,7 +302,7 @@ ReliefSeam ReliefSeam::smoothed(double width) const {
 }
 
 double ReliefSeam::margin(double x, double y) const {
-  const double at = angle_of(x, y) - 0.5, cell = std::floor(at), t = at - cell;
+  const double at = angle_step(x, y) - 0.5, cell = std::floor(at), t = at - cell;
   const std::size_t a = cell < 0.0 ? kAngles - 1 : std::min(static_cast<std::size_t>(cell), kAngles - 1);
   return (1.0 - t) * radii_[a] + t * radii_[next(a)] - std::sqrt(x * x + y * y);
 }

@@ -99,7 +99,7 @@ std::vector<PlaneAnchor> plane_anchors(const ReliefPatches& patches,
         return cell * (at + 0.5 + kJitter * (2.0 * double{unit_float(hash_append(own, axis))} - 1.0));
       };
       anchors.push_back({jittered(x, 0), jittered(y, 1), donors[order[number % order.size()]],
-                         turn_of(hash_append(own, 2))});
+                         hash_to_turn(hash_append(own, 2))});
     }
   }
   return anchors;
@@ -173,7 +173,7 @@ void add_second_differences(const std::vector<PatchHeight>& patch, int narrow, i
   }
 }
 
-double exponent_of(const std::vector<std::vector<PatchHeight>>& anchor_patches, int side) {
+double fit_exponent(const std::vector<std::vector<PatchHeight>>& anchor_patches, int side) {
   constexpr double kLeast = 0.3, kMost = 1.5;
   PeriodicHeights heights(side);
   SecondDifferences sums;
@@ -214,7 +214,7 @@ PeriodicHeights high_passed(const PeriodicHeights& plane) {
 }
 
 // An exemplar whose heights are those of the texture.
-ExemplarLayer exemplar_of(const ReliefTexture& texture) {
+ExemplarLayer texture_exemplar(const ReliefTexture& texture) {
   const auto [least, most] = std::minmax_element(texture.heights.begin(), texture.heights.end());
   ExemplarLayer layer;
   layer.pixel_size = texture.pixel;
@@ -231,8 +231,8 @@ ExemplarLayer exemplar_of(const ReliefTexture& texture) {
   return layer;
 }
 
-std::vector<double> roughness_of(const ReliefPoints& points, const std::vector<double>& heights,
-                                 double edge) {
+std::vector<double> relative_roughness(const ReliefPoints& points, const std::vector<double>& heights,
+                                       double edge) {
   constexpr double kAround = 4.0;  // edges
   std::vector<double> squares = wide_heights(points, heights, edge);
   for (std::size_t i = 0; i < squares.size(); ++i) {
@@ -257,7 +257,7 @@ ReliefTexture relief_texture(const ReliefPatches& patches, std::uint32_t hash) {
   }
   const std::vector<std::vector<PatchHeight>> anchor_patches =
       patches_in_plane(patches, plane_anchors(patches, donors, hash), PeriodicHeights(texture.side));
-  texture.exponent = exponent_of(anchor_patches, texture.side);
+  texture.exponent = fit_exponent(anchor_patches, texture.side);
   texture.heights = high_passed(blended(anchor_patches, texture.side)).values;
   return texture;
 }
@@ -265,8 +265,8 @@ ReliefTexture relief_texture(const ReliefPatches& patches, std::uint32_t hash) {
 LevelGround level_ground(const ReliefPatches& patches, const ReliefPoints& points,
                          const std::vector<double>& heights, std::uint32_t hash) {
   const ReliefTexture texture = relief_texture(patches, hash);
-  LevelGround ground{exemplar_of(texture), texture.exponent, {}, 0.0f};
-  const std::vector<double> roughness = roughness_of(points, heights, patches.anchor_spacing().edge);
+  LevelGround ground{texture_exemplar(texture), texture.exponent, {}, 0.0f};
+  const std::vector<double> roughness = relative_roughness(points, heights, patches.anchor_spacing().edge);
   const double most = roughness.empty() ? 0.0 : *std::max_element(roughness.begin(), roughness.end());
   ground.step = static_cast<float>(most / 65535.0);
   for (const double height : roughness) {

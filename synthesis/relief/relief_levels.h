@@ -22,7 +22,7 @@ struct ReliefLevels {
 };
 
 // The sum of the levels at a point of the bare surface, over the roughness there.
-ASTROLITH_HD inline float sum_of_levels(const ReliefLevels& l, const ArrayView& arrays, const Vec3f& at) {
+ASTROLITH_HD inline float level_sum(const ReliefLevels& l, const ArrayView& arrays, const Vec3f& at) {
   const ReliefLevel* levels = arrays[l.levels];
   float sum = 0.0f;
   for (std::uint32_t k = 0; k < l.levels.count; ++k) {
@@ -31,7 +31,7 @@ ASTROLITH_HD inline float sum_of_levels(const ReliefLevels& l, const ArrayView& 
   return sum;
 }
 
-// Adds the levels times the roughness to the heights at these points. The same bits as with sum_of_levels().
+// Adds the levels times the roughness to the heights at these points. The same bits as with level_sum().
 void add_levels(const ReliefLevels& l, const ArrayView& arrays, int count, const float* x, const float* y,
                 const float* z, const float* roughness, float* height);
 

@@ -58,8 +58,8 @@ BandRms typical_rms(const ReliefPoints& points, const BandHeights& bands, double
   return rms;
 }
 
-BandHeights values_of(const ReliefValues& blend, BandHeights bands) {
-  for (std::vector<double>& band : bands) band = blend.values_of(band);
+BandHeights evaluate(const ReliefValues& blend, BandHeights bands) {
+  for (std::vector<double>& band : bands) band = blend.evaluate(band);
   return bands;
 }
 
@@ -71,8 +71,8 @@ std::vector<double> equalized(const ReliefPoints& points, const ReliefValues& bl
   constexpr double kMostGain = 2.0;
   std::vector<double> sum;
   for (const LaidHeights& place : laid) sum.push_back(place.sum());
-  ReliefBands bands(points, blend.coefficients_of(sum), edge);
-  const BandRms has = typical_rms(points, values_of(blend, bands.bands), edge, seen_alone);
+  ReliefBands bands(points, blend.solve(sum), edge);
+  const BandRms has = typical_rms(points, evaluate(blend, bands.bands), edge, seen_alone);
   for (std::size_t b = 0; b < kReliefBands; ++b)
     add(bands.bands[b], bands.rest, has[b] > 0.0 ? std::min(wants[b] / has[b], kMostGain) : 1.0);
   return std::move(bands.rest);
@@ -111,7 +111,7 @@ std::vector<double> base_details(const ReliefPoints& points, double edge) {
 // of the base to places where the base has others.
 ReliefBands surface_bands(const ReliefPatches& patches, const ReliefValues& blend) {
   const double edge = patches.anchor_spacing().edge;
-  std::vector<double> heights = blend.coefficients_of(base_details(patches.points(), edge));
+  std::vector<double> heights = blend.solve(base_details(patches.points(), edge));
   add(patches.measured().heights, heights);
   return {patches.points(), heights, edge};
 }
@@ -140,7 +140,7 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
   ReliefBands bands = surface_bands(patches, donor_blend);
   if (foreign) add(bands.rest, bands.bands.back());
   const BandRms wants =
-      typical_rms(measured_points, values_of(donor_blend, bands.bands), apart.edge, options.fill);
+      typical_rms(measured_points, evaluate(donor_blend, bands.bands), apart.edge, options.fill);
   const std::vector<ReliefAnchor> own = foreign ? relief_anchors(points, apart.distance()) : anchors;
   std::vector<LaidHeights> laid(points.size());
   lay_patches(patches, bands.bands, points, own, ReliefDonors(patches, own, options.reach, options.fill),
@@ -156,7 +156,7 @@ namespace {
 
 // How much the heights of a place that was seen stand against those laid over it: not at all on ground as
 // smooth as what was not seen, in full where the mean square is twice that.
-float cover_of(double squares, double smoothest) {
+float seen_cover(double squares, double smoothest) {
   if (!(squares > smoothest)) return 0.0f;
   return smoothest > 0.0 ? static_cast<float>(std::min(squares / smoothest - 1.0, 1.0)) : 1.0f;
 }
@@ -178,10 +178,10 @@ std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
   const ReliefBands bands = surface_bands(patches, blend);
   std::vector<LaidHeights> before(points.size());
   for (std::size_t b = 0; b < kReliefBands; ++b) {
-    const std::vector<double> values = blend.values_of(bands.bands[b]);
+    const std::vector<double> values = blend.evaluate(bands.bands[b]);
     for (std::size_t i = 0; i < values.size(); ++i) {
       before[i].height[b] = static_cast<float>(values[i]);
-      before[i].cover[b] = cover_of(patches.squares_around()[i], smoothest);
+      before[i].cover[b] = seen_cover(patches.squares_around()[i], smoothest);
     }
   }
   std::vector<LaidHeights> laid = before;
@@ -189,7 +189,7 @@ std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
               ReliefDonors(patches, patches.anchors(), options.reach, options.fill), options.hash, laid);
   std::vector<double> change(points.size());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] = laid[i].sum() - before[i].sum();
-  std::vector<double> heights = blend.coefficients_of(change);
+  std::vector<double> heights = blend.solve(change);
   add(patches.measured().heights, heights);
   return heights;
 }

@@ -17,8 +17,8 @@ namespace astrolith {
 namespace {
 
 // The codes of the places; throws InputError where the picture has others than these.
-std::vector<std::uint16_t> codes_of(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
-                                    const std::string& place) {
+std::vector<std::uint16_t> read_codes(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
+                                      const std::string& place) {
   if (layer.pixels == nullptr) throw InputError(place + ": the image of the relief has not been loaded");
   const ExemplarImage& image = *layer.pixels;
   const ReliefLayout layout = relief_layout(places);
@@ -32,7 +32,7 @@ std::vector<std::uint16_t> codes_of(const ReliefLayer& layer, const std::vector<
                       column = layout.pixels[i] % static_cast<std::size_t>(layout.width);
     const std::uint16_t value = image.values[row * static_cast<std::size_t>(image.width) + column];
     same = value != 0;
-    codes[i] = layer.code_of(value);
+    codes[i] = layer.grey_to_code(value);
   }
   if (!same) {
     throw InputError(place +
@@ -43,7 +43,7 @@ std::vector<std::uint16_t> codes_of(const ReliefLayer& layer, const std::vector<
   return codes;
 }
 
-std::vector<double> heights_of(const ReliefLayer& layer, const std::vector<std::uint16_t>& codes) {
+std::vector<double> decode_heights(const ReliefLayer& layer, const std::vector<std::uint16_t>& codes) {
   std::vector<double> heights(codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) heights[i] = layer.low + layer.step() * codes[i];
   return heights;
@@ -66,9 +66,9 @@ struct DonorBody {
 };
 
 // The spacing of the lattice over the recipe's body, length units.
-double spacing_of(const ReliefLayer& layer) { return layer.donor_scale * layer.spacing; }
+double lattice_spacing(const ReliefLayer& layer) { return layer.donor_scale * layer.spacing; }
 
-std::uint32_t hash_of(const LayerSource& source) {
+std::uint32_t source_hash(const LayerSource& source) {
   return hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number));
 }
 
@@ -108,12 +108,12 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
   const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
   std::vector<double> heights = measured.heights;
   const double scale = layer.donor_scale;  // heights are in the unit of the donor
-  const LikenessOptions options{layer.reach, layer.fill_unseen, hash_of(source)};
+  const LikenessOptions options{layer.reach, layer.fill_unseen, source_hash(source)};
   if (layer.arrangement == ReliefArrangement::kLike) {
     heights = like_heights(ground.places, ground.tiles, patches, layer.donor.has_value(), layer.spacing,
                            options, source.place);
     const std::vector<double> own = layer.donor ? std::vector(heights.size(), 0.0) : measured.heights;
-    keep_room(body, ReliefPoints(ground.places, spacing_of(layer)), scale, own, heights);
+    keep_room(body, ReliefPoints(ground.places, lattice_spacing(layer)), scale, own, heights);
     encode(heights, scale, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
@@ -121,13 +121,14 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
   }
   if (layer.finer == 0) return;
   const ReliefPoints points(ground.places, layer.spacing);
-  ground.levels = level_ground(patches, points, heights, hash_append(hash_of(source), 4));
+  ground.levels = level_ground(patches, points, heights, hash_append(source_hash(source), 4));
   ground.levels.texture.pixel_size *= scale;
   ground.levels.step *= static_cast<float>(scale);
 }
 
 // The bounds of the codes in each cell.
-std::vector<ReliefCodeRange> ranges_of(const ReliefTiles& tiles, const std::vector<std::uint16_t>& codes) {
+std::vector<ReliefCodeRange> cell_code_ranges(const ReliefTiles& tiles,
+                                              const std::vector<std::uint16_t>& codes) {
   std::vector<ReliefCodeRange> tile_ranges(tiles.num_tiles(), {0xffff, 0});
   for (std::size_t i = 0; i < tiles.places.size(); ++i) {
     if (tiles.places[i] == kNoPlace) continue;
@@ -202,7 +203,7 @@ ASTROLITH_SIMD_CLONES void find_reaches(const ReliefSheet* sheets, const std::in
                                         const float* __restrict u, const float* __restrict v,
                                         const float* __restrict w, float* __restrict reach) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) reach[i] = reach_of_sheet(sheets[tile[i]], u[i], v[i], w[i]);
+  for (int i = 0; i < n; ++i) reach[i] = sheet_reach(sheets[tile[i]], u[i], v[i], w[i]);
 }
 
 ASTROLITH_SIMD_CLONES void find_means(float low, float step, int n, const float* __restrict weight,
@@ -256,7 +257,7 @@ struct ChunkPlaces {
 };
 
 // The words of the tiles for a code of each place.
-std::vector<std::uint32_t> words_of(const ReliefGround& ground, const std::vector<std::uint16_t>& codes) {
+std::vector<std::uint32_t> pack_words(const ReliefGround& ground, const std::vector<std::uint16_t>& codes) {
   std::vector<std::uint32_t> words(ground.tiles.places.size(), 0);
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint32_t number = ground.tiles.places[i];
@@ -268,25 +269,25 @@ std::vector<std::uint32_t> words_of(const ReliefGround& ground, const std::vecto
 }  // namespace
 
 void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body) {
-  places = find_relief_places(body, spacing_of(layer), source.place);
+  places = find_relief_places(body, lattice_spacing(layer), source.place);
   tiles = make_relief_tiles(places, source.place);
   low = static_cast<float>(layer.low);
   step = static_cast<float>(layer.step());
   if (layer.donor) {
     const DonorBody donor(*layer.donor, layer.spacing, source);
-    const std::vector<double> heights = heights_of(layer, codes_of(layer, donor.places, source.place));
+    const std::vector<double> heights = decode_heights(layer, read_codes(layer, donor.places, source.place));
     return draw(layer, source, body, {donor.ground(), donor.places, donor.tiles, heights}, *this);
   }
-  codes = codes_of(layer, places, source.place);
+  codes = read_codes(layer, places, source.place);
   if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0 && !layer.fill_unseen) return;
-  const std::vector<double> heights = heights_of(layer, codes);
+  const std::vector<double> heights = decode_heights(layer, codes);
   draw(layer, source, body, {body, places, tiles, heights}, *this);
 }
 
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {
   PreparedRelief prepared{{}, std::make_shared<ReliefGround>()};
-  prepared.noise.inverse_spacing = static_cast<float>(1.0 / spacing_of(layer));
-  prepared.noise.detail.finest = spacing_of(layer);
+  prepared.noise.inverse_spacing = static_cast<float>(1.0 / lattice_spacing(layer));
+  prepared.noise.detail.finest = lattice_spacing(layer);
   return prepared;
 }
 
@@ -298,20 +299,20 @@ ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, con
   const ReliefTiles& tiles = ground.tiles;
   noise.low = ground.low, noise.step = ground.step;
   noise.count_x = tiles.count[0], noise.count_y = tiles.count[1], noise.count_z = tiles.count[2];
-  const Vec3d origin = site.frame.origin * (1.0 / spacing_of(layer));
+  const Vec3d origin = site.frame.origin * (1.0 / lattice_spacing(layer));
   noise.origin = to_float(origin - Vec3d{static_cast<double>(tiles.low[0]), static_cast<double>(tiles.low[1]),
                                          static_cast<double>(tiles.low[2])} *
                                        static_cast<double>(kReliefCell));
   if (layer.finer > 0 && !ground.places.empty()) {
-    noise.below = place_levels(ground.levels, layer.finer, source.place, hash_append(hash_of(source), 5),
+    noise.below = place_levels(ground.levels, layer.finer, source.place, hash_append(source_hash(source), 5),
                                site, arrays, noise.detail);
-    noise.below.words = arrays.add(words_of(ground, ground.levels.codes));
+    noise.below.words = arrays.add(pack_words(ground, ground.levels.codes));
   }
   noise.tiles = arrays.add(tiles.tiles);
   noise.splits = arrays.add(tiles.splits);
   noise.sheets = arrays.add(tiles.sheets);
-  noise.words = arrays.add(words_of(ground, ground.codes));
-  noise.ranges = arrays.add(ranges_of(tiles, ground.codes));
+  noise.words = arrays.add(pack_words(ground, ground.codes));
+  noise.ranges = arrays.add(cell_code_ranges(tiles, ground.codes));
   for (const std::uint16_t code : ground.codes) {
     noise.height_bound =
         std::max(noise.height_bound, std::fabs(double{noise.low} + double{noise.step} * code));

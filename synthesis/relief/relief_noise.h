@@ -79,7 +79,7 @@ struct ReliefSums {
 };
 
 // 1 near a sheet, 0 far from it. `off` is the distance from its plane along its axis, in spacings.
-ASTROLITH_KERNEL float reach_of_sheet(const ReliefSheet& s, float u, float v, float w) {
+ASTROLITH_KERNEL float sheet_reach(const ReliefSheet& s, float u, float v, float w) {
   const float off = w - math::fma(s.slope_u, u, math::fma(s.slope_v, v, s.at));
   return math::clamp((s.farthest - math::abs(off)) * s.inverse_fade, 0.0f, 1.0f);
 }
@@ -177,7 +177,7 @@ ASTROLITH_HD inline ReliefSums sums_in_lattice(const ReliefNoise& n, const std::
   const auto add = [&](std::int32_t axis_tile, float u, float v, float w) {
     const std::int32_t tile = relief_tile(axis_tile, splits, u, v, w);
     const ReliefFootprint f = relief_footprint(kReliefTileSize * tile, u, v);
-    add_relief_words(words + f.first, f.u, f.v, reach_of_sheet(sheets[tile], u, v, w), sums);
+    add_relief_words(words + f.first, f.u, f.v, sheet_reach(sheets[tile], u, v, w), sums);
   };
   add(tiles[0], p.y, p.z, p.x);
   add(tiles[1], p.z, p.x, p.y);
@@ -199,7 +199,7 @@ ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& array
   if (n.below.levels.count == 0) return height;
   const float roughness =
       relief_mean(0.0f, n.below.step, sums_in_lattice(n, arrays[n.below.words], arrays, p));
-  return math::fma(roughness, sum_of_levels(n.below, arrays, at), height);
+  return math::fma(roughness, level_sum(n.below, arrays, at), height);
 }
 
 // Writes height[i] = n(p_i) at these points, length units. The loops are vectorised and give the same bits as

@@ -95,7 +95,7 @@ int AnchorSpacing::high_exponent() const {
   return std::max(kLowExponent, static_cast<int>(30.0 * share * share + 0.5));
 }
 
-PatchTurn turn_of(std::uint32_t hash) {
+PatchTurn hash_to_turn(std::uint32_t hash) {
   for (;; hash = hash_append(hash, 2)) {
     const double x = 2.0 * double{unit_float(hash_append(hash, 0))} - 1.0,
                  y = 2.0 * double{unit_float(hash_append(hash, 1))} - 1.0, squared = x * x + y * y;

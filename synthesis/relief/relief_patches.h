@@ -57,7 +57,7 @@ struct AnchorSpacing {
 struct PatchTurn {
   double cosine, sine;
 };
-PatchTurn turn_of(std::uint32_t hash);
+PatchTurn hash_to_turn(std::uint32_t hash);
 
 // A point near an anchor: its number, its offset in the anchor's tangent plane, as long as the chord, in
 // length units, and the weight (1 - d^2 / R^2), times the cosine between the normals squared where there are

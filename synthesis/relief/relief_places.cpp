@@ -51,10 +51,10 @@ bool keeps_sign(const BodyGround& ground, const ReachingMetaballs& reaching, con
 }
 
 // Values of s at a box of nodes, and the metaballs that reach it.
-class BlockOfNodes {
+class NodeBlock {
  public:
-  BlockOfNodes(const BodyGround& ground, const ReachingMetaballs& reaching, double spacing,
-               const std::array<std::int64_t, 3>& low, int nodes, int stride)
+  NodeBlock(const BodyGround& ground, const ReachingMetaballs& reaching, double spacing,
+            const std::array<std::int64_t, 3>& low, int nodes, int stride)
       : ground_(ground), reaching_(reaching), spacing_(spacing), low_(low), nodes_(nodes), stride_(stride) {}
 
   // The values at the nodes that are marked, x fastest; the others keep theirs.
@@ -128,7 +128,7 @@ class PlaceFinder {
     while (std::any_of(boxes.begin(), boxes.end(), [](const BlockBox& b) { return !b.is_block(); })) {
       std::vector<std::vector<BlockBox>> parts(boxes.size());
       parallel_for(0, static_cast<std::int64_t>(boxes.size()), [&](std::int64_t i) {
-        parts[static_cast<std::size_t>(i)] = parts_of(boxes[static_cast<std::size_t>(i)]);
+        parts[static_cast<std::size_t>(i)] = split(boxes[static_cast<std::size_t>(i)]);
       });
       boxes.clear();
       for (std::vector<BlockBox>& part : parts) {
@@ -187,7 +187,7 @@ class PlaceFinder {
   }
 
   // The box of the nodes of blocks, widened by a spacing.
-  Box box_of(const BlockBox& blocks) const {
+  Box node_box(const BlockBox& blocks) const {
     const auto at = [&](std::int64_t block) { return static_cast<double>(block * kBlockNodes) * spacing_; };
     const auto& [low, count, metaballs] = blocks;
     return widened(Box{{at(low[0]), at(low[1]), at(low[2])},
@@ -196,12 +196,12 @@ class PlaceFinder {
   }
   BlockBox narrowed(BlockBox blocks) const {
     blocks.metaballs =
-        metaballs_reaching(ground_.body, ground_.arrays, blocks.metaballs.lists(), box_of(blocks));
+        metaballs_reaching(ground_.body, ground_.arrays, blocks.metaballs.lists(), node_box(blocks));
     return blocks;
   }
 
   // The halves of a box along its longest side through which the surface may pass; a block itself.
-  std::vector<BlockBox> parts_of(const BlockBox& blocks) const {
+  std::vector<BlockBox> split(const BlockBox& blocks) const {
     if (blocks.is_block()) return {blocks};
     const auto axis = static_cast<std::size_t>(std::max_element(blocks.count.begin(), blocks.count.end()) -
                                                blocks.count.begin());
@@ -212,7 +212,7 @@ class PlaceFinder {
       part.count[axis] = upper ? blocks.count[axis] - half : half;
       part.low[axis] += upper ? half : 0;
       part = narrowed(std::move(part));
-      if (!keeps_sign(ground_, part.metaballs, box_of(part))) parts.push_back(std::move(part));
+      if (!keeps_sign(ground_, part.metaballs, node_box(part))) parts.push_back(std::move(part));
     }
     return parts;
   }
@@ -226,7 +226,7 @@ class PlaceFinder {
   bool mark_nodes(const BlockBox& block, std::vector<char>& marked) const {
     constexpr int kCells = kBlockNodes / kCellNodes, kCorners = kCells + 1;
     std::vector<float> s(kCorners * kCorners * kCorners);
-    BlockOfNodes(ground_, block.metaballs, spacing_, first_node(block), kCorners, kCellNodes)
+    NodeBlock(ground_, block.metaballs, spacing_, first_node(block), kCorners, kCellNodes)
         .evaluate(std::vector<char>(s.size(), 1), s);
     bool any = false;
     for (int cell = 0; cell < kCells * kCells * kCells; ++cell) {
@@ -255,7 +255,7 @@ class PlaceFinder {
     std::vector<char> marked(kAll, 0);
     if (!mark_nodes(block_box, marked)) return {};
     const std::array<std::int64_t, 3> low = first_node(block_box);
-    const BlockOfNodes block(ground_, block_box.metaballs, spacing_, low, kNodes, 1);
+    const NodeBlock block(ground_, block_box.metaballs, spacing_, low, kNodes, 1);
     std::vector<float> s(kAll);
     block.evaluate(marked, s);
     constexpr std::array<std::size_t, 3> kStep{1, kNodes, kNodes * kNodes};
@@ -277,7 +277,7 @@ class PlaceFinder {
     return with_normals(low, block, crossings);
   }
 
-  std::vector<ReliefPlace> with_normals(const std::array<std::int64_t, 3>& low, const BlockOfNodes& block,
+  std::vector<ReliefPlace> with_normals(const std::array<std::int64_t, 3>& low, const NodeBlock& block,
                                         const std::vector<Crossing>& crossings) const {
     const std::size_t n = crossings.size();
     std::array<std::vector<float>, 3> p, g;
@@ -301,7 +301,7 @@ class PlaceFinder {
           math::sqrt(math::fma(g[0][i], g[0][i], math::fma(g[1][i], g[1][i], g[2][i] * g[2][i])));
       if (!(length > 0.0f)) continue;
       const Vec3f normal{-g[a][i] / length, -g[u][i] / length, -g[v][i] / length};
-      const std::uint16_t weight = weight_of(normal.x);
+      const std::uint16_t weight = sheet_weight(normal.x);
       if (weight == 0) continue;
       const auto node = [&](std::size_t axis) { return static_cast<std::int32_t>(low[axis] + c.node[axis]); };
       places.push_back({c.axis, node(u), node(v), static_cast<float>(node(a)) + c.share, normal, weight});
@@ -310,7 +310,7 @@ class PlaceFinder {
   }
 
   // ((n_a^2 - least) / (1 - least))^2 as a share of 65535.
-  static std::uint16_t weight_of(float along) {
+  static std::uint16_t sheet_weight(float along) {
     const float over = (along * along - kLeastReliefSlant) / (1.0f - kLeastReliefSlant);
     const float share = over > 0.0f ? std::min(over * over, 1.0f) : 0.0f;
     return static_cast<std::uint16_t>(math::floor(math::fma(share, 65535.0f, 0.5f)));

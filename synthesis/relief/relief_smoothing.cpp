@@ -115,8 +115,8 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
       0, static_cast<std::int64_t>((points.cells() + stride - 1) / stride),
       [&](std::int64_t number) {
         const std::size_t c = static_cast<std::size_t>(number) * stride;
-        const std::uint32_t end = points.first_of_cell(c + 1);
-        for (std::uint32_t first = points.first_of_cell(c); first < end; first += kPlacesAtOnce)
+        const std::uint32_t end = points.first_in_cell(c + 1);
+        for (std::uint32_t first = points.first_in_cell(c); first < end; first += kPlacesAtOnce)
           add_run(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
       },
       8);
@@ -180,8 +180,8 @@ SampledMeans sampled_means(const ReliefPoints& points, const ThreeFields& fields
   const ThreeFields means = smoothed(points, fields, sigma, stride);
   SampledMeans sampled;
   for (std::size_t c = 0; c < points.cells(); c += stride) {
-    const auto first = points.order().begin() + points.first_of_cell(c),
-               end = points.order().begin() + points.first_of_cell(c + 1);
+    const auto first = points.order().begin() + points.first_in_cell(c),
+               end = points.order().begin() + points.first_in_cell(c + 1);
     sampled.places.insert(sampled.places.end(), first, end);
   }
   for (std::size_t f = 0; f < fields.size(); ++f) {

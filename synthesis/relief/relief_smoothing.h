@@ -35,10 +35,10 @@ class ReliefPoints {
     });
   }
 
-  // The places cell by cell. The places of a cell stand together, as order()[first_of_cell(c)] and so on.
+  // The places cell by cell. The places of a cell stand together, as order()[first_in_cell(c)] and so on.
   const std::vector<std::uint32_t>& order() const { return order_; }
   std::size_t cells() const { return cells_.size() - 1; }
-  std::uint32_t first_of_cell(std::size_t c) const { return cells_[c].first; }
+  std::uint32_t first_in_cell(std::size_t c) const { return cells_[c].first; }
 
   // Calls visit(first, end) for ranges of order() that hold all places within `radius` of the points of a
   // box, in the order of for_each_near().

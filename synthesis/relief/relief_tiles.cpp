@@ -20,7 +20,7 @@ std::array<double, 4> spline_weights(double t) {
           t * t * t / 6.0};
 }
 
-std::int32_t cell_of(std::int32_t line) {
+std::int32_t containing_cell(std::int32_t line) {
   return line >= 0 ? line / kReliefCell : -((-line + kReliefCell - 1) / kReliefCell);
 }
 
@@ -200,9 +200,9 @@ float middle_value(const ReliefSheet& plane) {
 }
 
 // The cells that a line passes, along one of its two axes: one, or two where it lies on their border.
-struct CellsOfLine {
+struct LineCells {
   std::int32_t first, last;
-  explicit CellsOfLine(std::int32_t line) : first(cell_of(line)), last(first) {
+  explicit LineCells(std::int32_t line) : first(containing_cell(line)), last(first) {
     if (line - first * kReliefCell == 0) --first;
   }
 };
@@ -307,11 +307,11 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
   };
   for (const ReliefPlace& p : places) {
     const auto a = static_cast<std::size_t>(p.axis);
-    const CellsOfLine u(p.u), v(p.v);
+    const LineCells u(p.u), v(p.v);
     const auto w = static_cast<std::int32_t>(std::floor(p.w));
     extend((a + 1) % 3, u.first, u.last);
     extend((a + 2) % 3, v.first, v.last);
-    extend(a, cell_of(w - 1), cell_of(w + 2));
+    extend(a, containing_cell(w - 1), containing_cell(w + 2));
   }
   double cells = 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -327,11 +327,11 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
     std::vector<char> has_place(static_cast<std::size_t>(cells), 0);
     for (const ReliefPlace& p : places) {
       if (p.axis != axis) continue;
-      const CellsOfLine u(p.u), v(p.v);
+      const LineCells u(p.u), v(p.v);
       const auto w = static_cast<std::int32_t>(std::floor(p.w));
       for (std::int32_t cv = v.first; cv <= v.last; ++cv) {
         for (std::int32_t cu = u.first; cu <= u.last; ++cu) {
-          for (std::int32_t cw = cell_of(w - 1); cw <= cell_of(w + 2); ++cw) {
+          for (std::int32_t cw = containing_cell(w - 1); cw <= containing_cell(w + 2); ++cw) {
             std::array<std::int64_t, 3> cell;
             cell[a] = cw - made.low[a], cell[au] = cu - made.low[au], cell[av] = cv - made.low[av];
             has_place[static_cast<std::size_t>(cell[0] +

@@ -113,7 +113,7 @@ ReliefValues::ReliefValues(const ReliefPoints& points, const ReliefShares& share
   }
 }
 
-std::vector<double> ReliefValues::values_of(const std::vector<double>& coefficients) const {
+std::vector<double> ReliefValues::evaluate(const std::vector<double>& coefficients) const {
   std::vector<double> values(coefficients.size());
   for_each_place(values.size(), [&](std::size_t i) {
     double sum = first_[i] == first_[i + 1] ? coefficients[i] : 0.0;
@@ -124,13 +124,13 @@ std::vector<double> ReliefValues::values_of(const std::vector<double>& coefficie
   return values;
 }
 
-std::vector<double> ReliefValues::coefficients_of(const std::vector<double>& values) const {
+std::vector<double> ReliefValues::solve(const std::vector<double>& values) const {
   constexpr int kIterations = 10;
   constexpr double kDamping = 1.5;
-  const std::vector<Interval> limits = limits_of(values);
+  const std::vector<Interval> limits = neighbour_limits(values);
   std::vector<double> coefficients = values;
   for (int pass = 0; pass < kIterations; ++pass) {
-    const std::vector<double> reached = values_of(coefficients);
+    const std::vector<double> reached = evaluate(coefficients);
     for (std::size_t i = 0; i < values.size(); ++i) {
       coefficients[i] =
           std::clamp(coefficients[i] + kDamping * (values[i] - reached[i]), limits[i].low, limits[i].high);
@@ -140,7 +140,7 @@ std::vector<double> ReliefValues::coefficients_of(const std::vector<double>& val
 }
 
 // The values that a place takes part in, and their range once more on both sides.
-std::vector<Interval> ReliefValues::limits_of(const std::vector<double>& values) const {
+std::vector<Interval> ReliefValues::neighbour_limits(const std::vector<double>& values) const {
   std::vector<Interval> limits(values.size());
   for_each_place(values.size(), [&](std::size_t i) {
     double low = values[i], high = values[i];

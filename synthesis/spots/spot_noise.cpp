@@ -111,8 +111,8 @@ Rotation rotation(const Vec3d& degrees) {
   return columns;
 }
 
-SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit,
-                     double amplitude) {
+SpotKernel make_kernel(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit,
+                       double amplitude) {
   const auto scaled = [&](double c, double axis) { return static_cast<float>(c / (axis * unit)); };
   const Vec3d &a = part.axes, &v = layer.variances;
   return {scaled(r[0].x, a.x),
@@ -136,7 +136,7 @@ SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotatio
 }
 
 // Half the sides, in length units, of the box around the ellipsoid q.V^-1 q = sigma of a part.
-Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
+Vec3d spot_support(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
   const Vec3d &a = part.axes, &v = layer.variances;
   const auto side = [&](double x, double y, double z) {
     return std::sqrt(v.x * (a.x * x) * (a.x * x) + v.y * (a.y * y) * (a.y * y) + v.z * (a.z * z) * (a.z * z));
@@ -146,14 +146,14 @@ Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r
 }
 
 // One part of the spots of one size: `unit` length units long and `amplitude` high.
-SpotKind kind_of(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
-                 double amplitude, double clip) {
+SpotKind make_kind(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
+                   double amplitude, double clip) {
   const Rotation turn = rotation(part.turn);
-  return {kernel_of(layer, part, turn, unit, amplitude), lattice, unit * part.center,
-          support_of(layer, part, turn, unit), static_cast<float>(clip)};
+  return {make_kernel(layer, part, turn, unit, amplitude), lattice, unit * part.center,
+          spot_support(layer, part, turn, unit), static_cast<float>(clip)};
 }
 
-double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
+double clip_level(const SpotLayer& layer, const SpotPart& part, double amplitude) {
   return kSpotClip * std::fabs(part.weight * amplitude) *
          (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
@@ -198,7 +198,7 @@ double finest_length(const SpotLayer& layer, std::span<const SpotPart> parts) {
   return finest / portable::whole_power(layer.lacunarity, layer.layers - 1);
 }
 
-Box box_of(int n, const float* x, const float* y, const float* z) {
+Box bounding_box(int n, const float* x, const float* y, const float* z) {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
   return box;
@@ -219,7 +219,7 @@ void add_reaching(const SpotKind& kind, const std::vector<SpotImpulse>& impulses
   }
   const int half = n / 2;
   for (const auto& [first, count] : {std::pair{0, half}, {half, n - half}}) {
-    const Box box = box_of(count, x + first, y + first, z + first);
+    const Box box = bounding_box(count, x + first, y + first, z + first);
     add_reaching(kind, impulses_reaching(impulses, kind.support, box), count, x + first, y + first, z + first,
                  height + first);
   }
@@ -229,10 +229,10 @@ void add_reaching(const SpotKind& kind, const std::vector<SpotImpulse>& impulses
 // into halves while too many lie around them, or more cells than around each point by itself.
 void draw_and_add(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x,
                   const float* y, const float* z, float* height) {
-  const Box box = box_of(n, x, y, z);
+  const Box box = bounding_box(n, x, y, z);
   const double cells = spot_cells_around(kind, box).count();
   if (n > 1 &&
-      (too_many_spots(kind, box) || cells > n * spot_cells_around(kind, box_of(1, x, y, z)).count())) {
+      (too_many_spots(kind, box) || cells > n * spot_cells_around(kind, bounding_box(1, x, y, z)).count())) {
     const int half = n / 2;
     draw_and_add(kind, thresholds, half, x, y, z, height);
     draw_and_add(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
@@ -265,8 +265,8 @@ SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index
     const double amplitude =
         (layer.inverted ? 1.0 : -1.0) * layer.amplitude * portable::whole_power(layer.gain, j);
     for (const SpotPart& part : parts) {
-      const double clip = clip_of(layer, part, amplitude);
-      kinds.push_back(kind_of(layer, part, lattice, unit, amplitude, clip));
+      const double clip = clip_level(layer, part, amplitude);
+      kinds.push_back(make_kind(layer, part, lattice, unit, amplitude, clip));
       kinds.back().offset += first;
       noise.height_bound += clip * (1.0 + kSpotSlack);
     }
@@ -283,7 +283,7 @@ std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* t
   return impulses;
 }
 
-double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
+double count_cells(const SpotNoise& noise, const ArrayView& arrays, double side) {
   double cells = 0.0;
   for (const SpotKind& kind : arrays.span(noise.kinds))
     cells += spot_cells_around(kind, {{}, {side, side, side}}).count();

@@ -129,8 +129,8 @@ ASTROLITH_HD inline Box spot_box(const Box& box) { return widened(box, 2e-6 * la
 
 // Calls visit(impulse) for the impulses of one cell, without any offset.
 template <typename Visit>
-ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::uint32_t* thresholds, int a,
-                                        int b, int c, Visit&& visit) {
+ASTROLITH_HD void for_each_cell_spot(const SpotLattice& lattice, const std::uint32_t* thresholds, int a,
+                                     int b, int c, Visit&& visit) {
   constexpr std::uint32_t kCountStream = 0x636f756eu, kOccupiedStream = 0x6f636375u;
   const std::uint32_t cell = hash_wide_cell(lattice.seed, lattice.first_cell[0] + a,
                                             lattice.first_cell[1] + b, lattice.first_cell[2] + c);
@@ -173,7 +173,7 @@ ASTROLITH_HD void for_each_spot(const SpotKind& kind, const std::uint32_t* thres
     const int b = cells.first[1] + static_cast<int>(row % length(1));
     const int c = cells.first[2] + static_cast<int>(row / length(1));
     for (int a = cells.first[0]; a <= cells.last[0]; ++a) {
-      for_each_spot_of_cell(kind.lattice, thresholds, a, b, c, keep);
+      for_each_cell_spot(kind.lattice, thresholds, a, b, c, keep);
     }
   }
 }
@@ -298,7 +298,7 @@ std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const A
 std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box);
 
 // The number of cells that impulses are drawn from for a cubic box; `side` is in length units.
-double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side);
+double count_cells(const SpotNoise& noise, const ArrayView& arrays, double side);
 
 // The number of cells and impulses that are drawn on average for a point by itself.
 double draws_at_a_point(const SpotNoise& noise, const ArrayView& arrays);

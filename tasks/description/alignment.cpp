@@ -162,8 +162,8 @@ TriangleMesh moved(const RigidMotion& motion, TriangleMesh mesh) {
 
 nlohmann::ordered_json alignment_json(const RigidMotion& motion) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const Vec3d& row : motion.rows) rows.push_back(json_of(row));
-  return {{"rotation", rows}, {"shift", json_of(motion.shift)}};
+  for (const Vec3d& row : motion.rows) rows.push_back(to_json(row));
+  return {{"rotation", rows}, {"shift", to_json(motion.shift)}};
 }
 
 }  // namespace astrolith

@@ -116,7 +116,7 @@ std::string one_unit(const Job& job, const CompareArguments& arguments, Triangle
                         arguments.a, unit_a));
     return unit_a;
   }
-  const double ratio = metres_of(unit_b) / metres_of(unit_a);
+  const double ratio = metres_per_unit(unit_b) / metres_per_unit(unit_a);
   for (Vec3d& vertex : b.vertices) vertex = ratio * vertex;
   job.say(fmt::format("{}: from {} to {}, the unit of {}", arguments.b, unit_b, unit_a, arguments.a));
   return unit_a;

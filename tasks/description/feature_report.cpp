@@ -108,7 +108,7 @@ nlohmann::ordered_json found_json(const FoundFeatures& found, BlobSign sign) {
   if (ratios.empty()) return entry;
   for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95})
     entry[sign == BlobSign::hollow ? "depth_over_diameter" : "height_over_diameter"].push_back(
-        quantile_of_sorted(ratios, share));
+        sorted_quantile(ratios, share));
   return entry;
 }
 

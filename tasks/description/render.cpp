@@ -66,7 +66,7 @@ void color_by(Job& job, const Arguments& a, PreviewOptions& options) {
   ValueRange range = value_range(values);
   if (!a.range.empty()) range.low = a.range[0], range.high = a.range[1];
   options.vertex_colors = sequential_colors(values, range.low, range.high);
-  options.marks.values = {range.low, range.high, a.title.empty() ? title_of_column(a.color) : a.title};
+  options.marks.values = {range.low, range.high, a.title.empty() ? column_title(a.color) : a.title};
   if (job.options.option("--ambient").count() == 0) options.ambient = 0.5;  // keeps colours readable
   job.summary["range"] = {range.low, range.high};
   job.say(fmt::format("{}: {}; colours from {:.4g} to {:.4g} of {:.4g} to {:.4g}", a.output.string(), a.color,

@@ -21,7 +21,7 @@ Json distribution_json(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   Json quantiles = Json::array();
   for (const double share : kShares) {
-    quantiles.push_back(quantile_of_sorted(values, share));
+    quantiles.push_back(sorted_quantile(values, share));
   }
   const auto n = static_cast<double>(values.size());
   double mean = 0.0, squares = 0.0;
@@ -149,7 +149,7 @@ nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
   entry["height_bands"] = bands_json(surface);
   if (surface.heights.coupling) entry["band_coupling"] = *surface.heights.coupling;
   for (const LocalStatistic& statistic : surface.local) {
-    const char* const list = traits_of(statistic.quantity).list;
+    const char* const list = quantity_traits(statistic.quantity).list;
     if (list != nullptr) entry[list] = distribution_json(statistic.values);
   }
   return entry;

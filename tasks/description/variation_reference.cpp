@@ -25,7 +25,7 @@ SimilarityMeasure similarity_with(const TriangleMesh& mesh) {
   };
 }
 
-std::string words_of(const Variation& variation) {
+std::string describe(const Variation& variation) {
   return fmt::format(
       "strength {:.3g}, {}; {:.2g} % of the diagonal from the recipe's own body on average, {:.2g} % at most",
       variation.strength, variation.noise == VariedNoise::kNew ? "new noise" : "its own noise",

@@ -15,7 +15,7 @@ namespace astrolith {
 SimilarityMeasure similarity_with(const TriangleMesh& mesh);
 
 // "strength 0.31, new noise; 0.84 % of the diagonal from the recipe's own body on average, 2.5 % at most"
-std::string words_of(const Variation& variation);
+std::string describe(const Variation& variation);
 
 // The figures of a variation: similarity, strength, noise ("new" or "kept"), and its mean and largest
 // distance from the recipe's own body as fractions of the diagonal.

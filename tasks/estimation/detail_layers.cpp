@@ -33,15 +33,15 @@ std::string place_of(std::string_view option, const std::string& file, std::size
 
 // A fit knows no groups of metaballs, so that no layer of its recipe can be bound to one.
 void check_no_group(const Layer& layer, const std::string& place) {
-  if (locality_of(layer) == nullptr) return;
-  throw InputError(place + (use_of(layer) == nullptr ? ".population" : "") +
+  if (find_locality(layer) == nullptr) return;
+  throw InputError(place + (find_use(layer) == nullptr ? ".population" : "") +
                    ".locality.group: a fitted body has no groups; take `locality` out of the layer, or lay "
                    "it on the recipe with synth --base once that has the group");
 }
 
 // Only Gabor layers are taken from a photo's recipe. Expects a recipe that was read without errors.
 void check_masking_layer(const Recipe& rock, std::size_t index, const std::string& place) {
-  const LayerUse* use = use_of(rock.layers[index]);
+  const LayerUse* use = find_use(rock.layers[index]);
   if (use == nullptr || !use->mask) return;
   const int masking = find_layer(std::span(rock.layers).first(index), use->mask->layer);
   if (masking >= 0 && std::holds_alternative<GaborLayer>(rock.layers[static_cast<std::size_t>(masking)]))
@@ -53,7 +53,7 @@ void check_masking_layer(const Recipe& rock, std::size_t index, const std::strin
 
 void check_not_after_warp(const std::vector<Layer>& before, const std::string& place) {
   const auto warps = [](const Layer& layer) {
-    const LayerUse* use = use_of(layer);
+    const LayerUse* use = find_use(layer);
     return use != nullptr && use->combination.kind == Combine::kWarp;
   };
   if (std::none_of(before.begin(), before.end(), warps)) return;
@@ -95,7 +95,7 @@ double transfer_details(const Recipe& other, Recipe& recipe) {
 
 void add_micro_layers(const std::string& file, double mm_per_px, double height_mm, Recipe& recipe) {
   Recipe rock = load_recipe(file);
-  const double mm = 1e-3 / metres_of(recipe.length_unit);
+  const double mm = 1e-3 / metres_per_unit(recipe.length_unit);
   const GaborLayer* first = nullptr;
   for (const Layer& layer : rock.layers) {
     const auto* gabor = std::get_if<GaborLayer>(&layer);
@@ -108,7 +108,7 @@ void add_micro_layers(const std::string& file, double mm_per_px, double height_m
   if (rock.length_unit == "px" && !(mm_per_px > 0.0 && height_mm > 0.0)) {
     throw InputError(file + ": lengths are pixels; give --mm-per-px and --micro-height");
   }
-  const double unit = metres_of(rock.length_unit) / metres_of(recipe.length_unit);
+  const double unit = metres_per_unit(rock.length_unit) / metres_per_unit(recipe.length_unit);
   const double height = height_mm > 0.0 ? mm * height_mm / first->height_rms : unit;
   std::vector<Layer> added;
   for (std::size_t i = 0; i < rock.layers.size(); ++i) {

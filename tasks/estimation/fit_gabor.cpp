@@ -175,7 +175,7 @@ PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
           o.unit,
           o.height_rms,
           job.seed,
-          in_metres ? 1.0 / metres_of(o.unit) : 1.0};
+          in_metres ? 1.0 / metres_per_unit(o.unit) : 1.0};
 }
 
 // The side of a pixel in metres that the file states.
@@ -353,7 +353,7 @@ void say_result(const TextureFit& fit, const PhotoFitArguments& o, const Job& jo
   if (o.mm_per_px > 0.0 && o.height_rms < 0.0 && !o.heights_in_metres) {
     job.say(fmt::format(
         "note: without --height-rms white is a height of 1 {}; half a pixel is --height-rms {:.3g}", o.unit,
-        0.5e-3 * o.mm_per_px / metres_of(o.unit)));
+        0.5e-3 * o.mm_per_px / metres_per_unit(o.unit)));
   }
   if (o.has_gaps) say_gaps(fit, job);
   if (fit.lobes) say_lobes(*fit.lobes, o, job);
@@ -387,7 +387,7 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   if (o.model == "gabor") job.keep_best_so_far();
   check_model(job, o);
   require_outputs(o);
-  if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
+  if (!o.in_memory) o.image_sha256 = file_sha256(o.image);
   predict_memory(job, o, photo_options(job, o));
   ImageFile photo = o.in_memory ? ImageFile{*o.in_memory, {}}
                                 : read_image(o.image, o.channels == "pca", job.progress("photo"));

@@ -217,7 +217,7 @@ Recipe begun_population(const PopulationOptions& options) {
   return recipe;
 }
 
-nlohmann::ordered_json json_of(const MeasuredBody& body) {
+nlohmann::ordered_json to_json(const MeasuredBody& body) {
   return {{"name", body.name},
           {"class", std::string(class_word(body.kind))},
           {"source", std::string(source_word(body.source))},
@@ -251,7 +251,7 @@ void fit_population(Job& job, PopulationOptions& options) {
         "curves");
   validate_recipe(recipe, options.output.string());
   auto bodies = nlohmann::ordered_json::array();
-  for (const MeasuredBody& body : recipe.population->bodies) bodies.push_back(json_of(body));
+  for (const MeasuredBody& body : recipe.population->bodies) bodies.push_back(to_json(body));
   job.summary["length_unit"] = recipe.length_unit;
   job.summary["bodies"] = std::move(bodies);
   write_loaded_recipe(recipe, options.output);

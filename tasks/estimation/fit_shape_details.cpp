@@ -141,7 +141,7 @@ nlohmann::ordered_json write_variations(const Job& job, const TargetBody& target
     write_loaded_recipe(variation.recipe, files[k]);
     figures.push_back(figures_of(variation));
     job.say(fmt::format("{}: similarity {:.4f} with the mesh; {}", files[k].string(), variation.similarity,
-                        words_of(variation)));
+                        describe(variation)));
     if (job.stopped()) break;
   }
   return figures;

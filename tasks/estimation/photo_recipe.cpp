@@ -14,7 +14,7 @@ namespace {
 GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel, bool first) {
   GaborLayer layer = layer_of(channel, first);
   layer.name = o.layer_name;
-  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_of(o.unit)) : 1.0;
+  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_per_unit(o.unit)) : 1.0;
   if (first) layer.height_rms = o.height_rms >= 0.0 ? o.height_rms : layer.height_rms * o.unit_per_value;
   return layer;
 }
@@ -64,7 +64,7 @@ namespace fs = std::filesystem;
 
 Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options) {
   layer.name = options.layer_name;
-  if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (1e3 * metres_of(options.unit));
+  if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (1e3 * metres_per_unit(options.unit));
   layer.height_rms =
       options.height_rms >= 0.0 ? options.height_rms : layer.height_rms * options.unit_per_value;
   Recipe recipe;
@@ -88,7 +88,7 @@ void write_exemplar_recipe(Recipe recipe, const fs::path& file) {
     write_png16_grey(pixels.values, pixels.width, pixels.height, image);
   }
   layer.image = image.filename().string();
-  layer.image_sha256 = sha256_of_file(image);
+  layer.image_sha256 = file_sha256(image);
   write_recipe(recipe, file);
 }
 

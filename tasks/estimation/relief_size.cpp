@@ -124,7 +124,7 @@ double relief_spacing_of(const std::string& words, const std::string& unit, doub
   const Length length = length_in(words).value();
   if (length.unit.empty()) return length.number;
   if (length.unit == "edges") return length.number * mean_edge;
-  return length.number * metres_of(length.unit) / metres_of(unit);
+  return length.number * metres_per_unit(length.unit) / metres_per_unit(unit);
 }
 
 bool can_have_relief(const TargetBody& target) {

@@ -21,9 +21,9 @@ TriangleMesh read_target_mesh(FitArguments& arguments) {
     arguments.mesh_sha256 = hash.hex();
     return *arguments.in_memory;
   }
-  arguments.mesh_sha256 = sha256_of_file(arguments.mesh);
+  arguments.mesh_sha256 = file_sha256(arguments.mesh);
   TriangleMesh mesh = arguments.repair.read(arguments.mesh);
-  if (sha256_of_file(arguments.mesh) != arguments.mesh_sha256) {
+  if (file_sha256(arguments.mesh) != arguments.mesh_sha256) {
     throw InputError(arguments.mesh + ": changed while it was read; run again when it is whole");
   }
   return mesh;

@@ -130,7 +130,7 @@ TriangleMesh likeness_for_report(const Recipe& recipe) {
   }
   if (!has_relief) return {};
   try {
-    return coarse_mesh_of(ImplicitField(like), kResolution);
+    return make_coarse_mesh(ImplicitField(like), kResolution);
   } catch (const InputError&) {
     return {};
   }

@@ -86,7 +86,7 @@ nlohmann::ordered_json figures_of(const PreparedExemplar& exemplar) {
 
 }  // namespace
 
-GreyImage TextureFit::luma() const { return photo.size() == 3 ? luma_of(photo) : photo.front(); }
+GreyImage TextureFit::luma() const { return photo.size() == 3 ? luma_image(photo) : photo.front(); }
 
 std::optional<TextureModel> model_named(const std::string& name) {
   for (const TextureModel model : kTextureModels) {
@@ -138,7 +138,7 @@ nlohmann::ordered_json texture_figures(const TextureFit& fit) {
 }
 
 double variance_in_phases(const TextureFit& fit) {
-  return fit.image->height_rms * fit.image->height_rms / variance_of(fit.luma().values);
+  return fit.image->height_rms * fit.image->height_rms / sample_variance(fit.luma().values);
 }
 
 std::string choice_sentence(const TextureFit& fit) {

@@ -173,10 +173,10 @@ FitTexture synthesize_like_photo(const TextureFit& fit, const Progress& progress
 }
 
 double synthesized_variance_ratio(const TextureFit& fit, const FitTexture& texture) {
-  if (!fit.lobes) return variance_of(texture.channels.front()) / variance_of(fit.luma().values);
+  if (!fit.lobes) return sample_variance(texture.channels.front()) / sample_variance(fit.luma().values);
   double kept = 0.0, variance = 0.0;
   for (std::size_t k = 0; k < fit.lobes->channels.size(); ++k) {
-    kept += variance_of(texture.channels[k]) * fit.lobes->channels[k].variance();
+    kept += sample_variance(texture.channels[k]) * fit.lobes->channels[k].variance();
     variance += fit.lobes->channels[k].pixel_variance();
   }
   return kept / variance;

@@ -41,12 +41,12 @@ Json mass_json(const GravityBody& body, const BodyMass& mass, double volume, dou
   for (std::size_t i = 0; i < 3; ++i) {
     inertia.push_back({fifth * mass.inertia[i][0], fifth * mass.inertia[i][1], fifth * mass.inertia[i][2]});
     moments.push_back(fifth * principal.moments[i]);
-    axes.push_back(json_of(principal.axes[i]));
+    axes.push_back(to_json(principal.axes[i]));
   }
   return {{"volume_m3", volume * m * m * m},
           {"area_m2", surface_area(body.mesh) * m * m},
           {"mass_kg", density * mass.volume * m * m * m},
-          {"center_of_mass_m", json_of(m * mass.center)},
+          {"center_of_mass_m", to_json(m * mass.center)},
           {"inertia_kg_m2", inertia},
           {"principal_moments_kg_m2", moments},
           {"principal_axes", axes}};

@@ -29,7 +29,7 @@ void require_closed(const std::string& name, const TriangleMesh& mesh) {
 }  // namespace
 
 GravityBody body_of_mesh(TriangleMesh mesh, const std::string& unit, const std::string& name) {
-  GravityBody body{std::move(mesh), unit, metres_of(unit), {}};
+  GravityBody body{std::move(mesh), unit, metres_per_unit(unit), {}};
   require_closed(name, body.mesh);
   return body;
 }

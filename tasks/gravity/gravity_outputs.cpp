@@ -93,7 +93,7 @@ void write_gravity_preview(const Job& job, const GravityBody& body, const Gravit
   const ValueRange range = value_range(values);
   PreviewOptions options = look.options(job, body.mesh, body.unit);
   options.vertex_colors = sequential_colors(values, range.low, range.high);
-  options.marks.values = {range.low, range.high, title_of_column(column.name)};
+  options.marks.values = {range.low, range.high, column_title(column.name)};
   paint_sites(body.mesh, sites, options.vertex_colors);
   for (std::size_t i = 0; i < sites.size() && !look.no_marks; ++i)
     options.marks.labels.push_back({sites[i].center, std::to_string(i + 1)});

@@ -291,8 +291,8 @@ std::string patch_words(const LandingSite& site) {
 nlohmann::ordered_json sites_json(std::span<const LandingSite> sites, const GravityBody& body) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const LandingSite& site : sites) {
-    list.push_back({{"center", json_of(site.center)},
-                    {"normal", json_of(site.axes.up)},
+    list.push_back({{"center", to_json(site.center)},
+                    {"normal", to_json(site.axes.up)},
                     {"latitude_deg", site.latitude},
                     {"longitude_deg", site.longitude},
                     {"mean_slope_deg", site.mean_slope},

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The file that holds this code: a program, or a module of the Python package.
-fs::path file_of_this_code() {
+fs::path find_code_file() {
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
   static const char kInThisCode = 0;
@@ -34,7 +34,7 @@ fs::path file_of_this_code() {
 fs::path library_folder() {
   if (const char* const stated = std::getenv("ASTROLITH_LIBRARY")) return stated;
   constexpr int kMostSteps = 3;  // from a test or a Python module to the root of the build
-  fs::path place = file_of_this_code().parent_path();
+  fs::path place = find_code_file().parent_path();
   std::error_code none;
   for (int step = 0; step < kMostSteps; ++step, place = place.parent_path()) {
     const fs::path folder = place / "share/astrolith/library";

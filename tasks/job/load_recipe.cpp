@@ -46,7 +46,7 @@ void load_image(NamedImage& named, bool keeps_colors, const std::filesystem::pat
                 const std::string& place) {
   const std::filesystem::path file = folder / named.image;
   const std::vector<std::uint8_t> bytes = read_bytes(file, place + ".image");
-  const std::string digits = sha256_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::string digits = sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   if (!same_digits(digits, named.image_sha256)) {
     throw InputError(place + ".image: " + file.string() +
                      " has changed since the recipe was written; restore it, or state its SHA-256 " + digits);
@@ -59,15 +59,15 @@ void load_image(NamedImage& named, bool keeps_colors, const std::filesystem::pat
 }
 
 // Throws InputError for a mesh or a photo, of which a fit makes a recipe.
-void require_no_input_of_fits(const std::filesystem::path& file) {
+void refuse_fit_input(const std::filesystem::path& file) {
   const std::string extension = mesh_extension(file);
-  const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
+  const auto has_one = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };
   if (has_mesh_extension(file)) {
     throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
   }
-  if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {
+  if (has_one({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {
     throw InputError(file.string() + ": is a picture and no recipe; fit_gabor makes a recipe of a photo");
   }
 }
@@ -83,7 +83,7 @@ std::filesystem::path relief_image_name(const std::filesystem::path& recipe, int
 void write_image(NamedImage& named, const std::filesystem::path& file) {
   write_png16_grey(named.pixels->values, named.pixels->width, named.pixels->height, file);
   named.image = file.filename().string();
-  named.image_sha256 = sha256_of_file(file);
+  named.image_sha256 = file_sha256(file);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ void write_image(NamedImage& named, const std::filesystem::path& file) {
 void load_images(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     Layer& layer = recipe.layers[i];
-    NamedImage* named = image_of(layer);
+    NamedImage* named = find_image(layer);
     if (named != nullptr && named->pixels == nullptr) {
       load_image(*named, has_color(layer), folder, name + ": layers[" + std::to_string(i) + "]");
     }
@@ -99,7 +99,7 @@ void load_images(Recipe& recipe, const std::filesystem::path& folder, const std:
 }
 
 Recipe load_recipe(const std::filesystem::path& file) {
-  require_no_input_of_fits(file);
+  refuse_fit_input(file);
   Recipe recipe = read_recipe(find_body(file));
   load_images(recipe, file.parent_path(), file.string());
   return recipe;
@@ -109,7 +109,7 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   int number = 0;
   for (Layer& layer : recipe.layers) {
-    NamedImage* named = image_of(layer);
+    NamedImage* named = find_image(layer);
     if (named == nullptr || named->pixels == nullptr) continue;
     if (auto* relief = std::get_if<ReliefLayer>(&layer)) {
       if (is_compact_name(file)) {

@@ -59,16 +59,16 @@ template <typename Integer>
 requires std::is_integral_v<Integer>
 void read(Integer& value, const std::string* word) { value = integer_in<Integer>(*word); }
 
-std::string default_of(bool) { return ""; }
-std::string default_of(const std::string& value) { return value; }
-std::string default_of(const fs::path& value) { return value.string(); }
-std::string default_of(double value) { return fmt::format("{:g}", value); }
-std::string default_of(std::int64_t value) { return std::to_string(value); }
-std::string default_of(std::uint64_t value) { return std::to_string(value); }
-std::string default_of(int value) { return std::to_string(value); }
-std::string default_of(const Triple&) { return ""; }
+std::string format_default(bool) { return ""; }
+std::string format_default(const std::string& value) { return value; }
+std::string format_default(const fs::path& value) { return value.string(); }
+std::string format_default(double value) { return fmt::format("{:g}", value); }
+std::string format_default(std::int64_t value) { return std::to_string(value); }
+std::string format_default(std::uint64_t value) { return std::to_string(value); }
+std::string format_default(int value) { return std::to_string(value); }
+std::string format_default(const Triple&) { return ""; }
 template <typename T>
-std::string default_of(const std::vector<T>&) {
+std::string format_default(const std::vector<T>&) {
   return "";
 }
 
@@ -254,7 +254,7 @@ OptionTable::~OptionTable() = default;
 
 Option OptionTable::add_option(const std::string& names, OptionValue variable, const std::string& meaning) {
   auto row = std::make_unique<OptionRow>(OptionRow{names, variable, meaning});
-  row->default_words = std::visit([](const auto* value) { return default_of(*value); }, variable);
+  row->default_words = std::visit([](const auto* value) { return format_default(*value); }, variable);
   rows_.push_back(std::move(row));
   return Option(rows_.back().get());
 }

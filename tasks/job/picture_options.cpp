@@ -15,7 +15,7 @@ constexpr const char* kPictureOptions[] = {"--picture-size", "--picture-bits", "
                                            "--sun",          "--sun-body",     "--phase",   "--reflectance",
                                            "--ambient",      "--background",   "--no-marks"};
 
-Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
+Vec3d to_vector(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
 void require_direction(const char* option, const Vec3d& v) {
   const double square = squared_norm(v);
@@ -28,7 +28,7 @@ PixelSize picture_size(const std::string& text) {
   return parse_pixel_size("--picture-size", text, kLeastPictureSide, kMostPictureSide);
 }
 
-std::vector<Camera> cameras_of(const std::vector<std::string>& words) {
+std::vector<Camera> parse_cameras(const std::vector<std::string>& words) {
   std::vector<Camera> cameras;
   for (const std::string& camera : words) cameras.push_back(parse_camera("--camera", camera));
   return cameras;
@@ -93,10 +93,10 @@ void PictureOptions::check(const Job& job, bool has_picture, const std::string& 
   if (cameras.size() + views.size() > kMostViews) {
     throw InputError("--camera, --view: give at most 64 of them together");
   }
-  cameras_of(cameras);
+  parse_cameras(cameras);
   parse_reflectance("--reflectance", reflectance);
-  for (const Direction& view : views) require_direction("--view", vector_of(view));
-  require_direction("--sun", vector_of(sun));
+  for (const Direction& view : views) require_direction("--view", to_vector(view));
+  require_direction("--sun", to_vector(sun));
   int suns = 0;
   for (const char* name : {"--sun", "--sun-body", "--phase"}) suns += job.options.option(name).count() > 0;
   if (suns > 1) throw InputError("--sun, --sun-body and --phase place one sun; give one of them");
@@ -115,11 +115,11 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
     made.height = pixels.height;
   }
   made.seed = job.seed;
-  made.sun.direction = vector_of(sun);
+  made.sun.direction = to_vector(sun);
   if (!sun_body.empty()) made.sun = {{sun_body[0], sun_body[1], sun_body[2]}, true};
   if (!phase.empty()) made.sun = sun_at_phase(phase[0], phase[1]);
-  made.views = cameras_of(cameras);
-  for (const Direction& view : views) made.views.push_back(view_from(vector_of(view)));
+  made.views = parse_cameras(cameras);
+  for (const Direction& view : views) made.views.push_back(view_from(to_vector(view)));
   if (made.views.empty()) made.views = usual_views(mesh);
   made.ambient = ambient;
   made.reflectance = parse_reflectance("--reflectance", reflectance);
@@ -164,7 +164,7 @@ void PictureOptions::write(const Job& job, const RenderedPicture& picture,
 }
 
 bool PictureOptions::has_pinholes() const {
-  const std::vector<Camera> all = cameras_of(cameras);
+  const std::vector<Camera> all = parse_cameras(cameras);
   return std::any_of(all.begin(), all.end(), [](const Camera& camera) { return camera.field_of_view > 0.0; });
 }
 

@@ -76,7 +76,7 @@ inline std::string unit_question(const std::filesystem::path& file, double volum
   constexpr double kClearlyWrong = 30.0, kLargest = 600.0, kSmallest = 0.00025;  // km: Ceres has 470
   constexpr double kLargerThanMost = 30.0;  // km: shape models of some ten asteroids and of large moons
   const double size = portable::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi));
-  const double radius = size * metres_of(unit.name) / 1000.0;
+  const double radius = size * metres_per_unit(unit.name) / 1000.0;
   const std::string name = file.string();
   const auto asked = [&](const std::string& is_not) {
     return fmt::format("note: {}: a mean radius of {:.4g} km is {}; is --unit {} right, or the mesh scaled?",

@@ -28,14 +28,14 @@ constexpr int kUsualMap = 2048;
 constexpr std::array<const char*, 7> kMapWords{"normal", "height", "occlusion", "curvature",
                                                "label",  "color",  "albedo"};
 
-int side_of_level(const MeshSinks& sinks, std::size_t level) {
+int level_side(const MeshSinks& sinks, std::size_t level) {
   const int side = sinks.bake > 0 ? sinks.bake : kUsualMap;
   return std::max(side >> level, kLeastMap);
 }
 
 // Where no maps are baked, the image is as large as the charts need.
-TextureAtlas atlas_of_level(const TriangleMesh& mesh, const MeshSinks& sinks, std::size_t level) {
-  const int side = side_of_level(sinks, level);
+TextureAtlas make_level_atlas(const TriangleMesh& mesh, const MeshSinks& sinks, std::size_t level) {
+  const int side = level_side(sinks, level);
   return sinks.bake > 0 ? make_texture_atlas(mesh, side, "--bake")
                         : make_texture_atlas(mesh, side, "--uv", kMostMap);
 }
@@ -76,16 +76,16 @@ struct EncodedMap {
 // Encodes the maps side by side.
 std::vector<EncodedMap> encoded_maps(const BakedMaps& maps) {
   const auto bytes = [side = maps.side](const std::vector<std::uint8_t>& values, int channels) {
-    return [&values, side, channels] { return png_of(values, side, side, channels); };
+    return [&values, side, channels] { return encode_png(values, side, side, channels); };
   };
   std::vector<EncodedMap> all{{"normal", bytes(maps.normal, 3)},
-                              {"height", [&maps] { return png_of(maps.height, maps.side, maps.side); }},
+                              {"height", [&maps] { return encode_png(maps.height, maps.side, maps.side); }},
                               {"occlusion", bytes(maps.occlusion, 1)},
                               {"curvature", bytes(maps.curvature, 1)},
                               {"label", bytes(maps.label, 1)}};
   if (!maps.color.empty()) all.push_back({"color", bytes(maps.color, 3)});
   if (!maps.albedo.empty())
-    all.push_back({"albedo", [&maps] { return png_of(maps.albedo, maps.side, maps.side, 3); }});
+    all.push_back({"albedo", [&maps] { return encode_png(maps.albedo, maps.side, maps.side, 3); }});
   parallel_for(0, static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
     EncodedMap& map = all[static_cast<std::size_t>(i)];
     map.png = map.encode();
@@ -93,7 +93,7 @@ std::vector<EncodedMap> encoded_maps(const BakedMaps& maps) {
   return all;
 }
 
-nlohmann::ordered_json figures_of_maps(const BakedMaps& maps) {
+nlohmann::ordered_json map_figures(const BakedMaps& maps) {
   return {{"side", maps.side},
           {"height_lowest", maps.lowest},
           {"height_highest", maps.highest},
@@ -103,7 +103,7 @@ nlohmann::ordered_json figures_of_maps(const BakedMaps& maps) {
 }
 
 // The use of a map in a material; none for maps that glTF has no place for.
-std::optional<SkinMap::Use> use_of(const std::string& word) {
+std::optional<SkinMap::Use> find_map_use(const std::string& word) {
   if (word == "normal") return SkinMap::Use::kNormal;
   if (word == "occlusion") return SkinMap::Use::kOcclusion;
   if (word == "color") return SkinMap::Use::kBaseColor;
@@ -111,20 +111,20 @@ std::optional<SkinMap::Use> use_of(const std::string& word) {
 }
 
 void add_maps(Job& job, const fs::path& mesh, std::size_t level, const BakedMaps& maps, MeshSkin& skin) {
-  nlohmann::ordered_json figures = figures_of_maps(maps);
+  nlohmann::ordered_json figures = map_figures(maps);
   auto files = nlohmann::ordered_json::object();
   for (EncodedMap& map : encoded_maps(maps)) {
     const fs::path file = map_file(mesh, level, map.word);
     write_file(file, map.png);
     files[map.word] = file.filename().string();
-    if (const auto use = use_of(map.word))
+    if (const auto use = find_map_use(map.word))
       skin.maps.push_back({*use, file.stem().string(), std::move(map.png)});
   }
   figures["files"] = std::move(files);
   job.summary["maps"].push_back(std::move(figures));
 }
 
-nlohmann::ordered_json figures_of_atlas(const TextureAtlas& atlas, const AtlasStretch& stretch) {
+nlohmann::ordered_json atlas_figures(const TextureAtlas& atlas, const AtlasStretch& stretch) {
   return {{"charts", atlas.places.size()}, {"side", atlas.side},
           {"texel", atlas.texel},          {"padding", kChartPadding},
           {"filled", stretch.filled},      {"stretch_mean", stretch.mean},
@@ -148,7 +148,7 @@ void add_skins(Job& job, const MeshSinks& sinks, const MeshPart& part, const Sur
   // All atlases come first: charts that do not fit leave no maps behind.
   std::vector<TextureAtlas> atlases;
   for (std::size_t level = 0; level < levels.size(); ++level)
-    atlases.push_back(atlas_of_level(*levels[level].mesh, sinks, level));
+    atlases.push_back(make_level_atlas(*levels[level].mesh, sinks, level));
   job.summary["charts"] = nlohmann::ordered_json::array();
   if (sinks.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
   for (std::size_t level = 0; level < levels.size(); ++level) {
@@ -157,7 +157,7 @@ void add_skins(Job& job, const MeshSinks& sinks, const MeshPart& part, const Sur
     MeshSkin skin{atlas.coordinates};
     skin.tangents = vertex_tangents(mesh, skin.coordinates);
     const AtlasStretch stretch = atlas_stretch(mesh, skin.coordinates);
-    job.summary["charts"].push_back(figures_of_atlas(atlas, stretch));
+    job.summary["charts"].push_back(atlas_figures(atlas, stretch));
     if (sinks.bake > 0) {
       if (!occluder) occluder.emplace(job, part, atlas.texel);
       if (!labels) labels.emplace(part.recipe, part.field);

@@ -152,14 +152,14 @@ void place_on_ground(const ImplicitField& field, Region& region) {
 }
 
 bool adds_details(const Layer& layer) {
-  const Population* drawn = population_of(layer);
-  return (drawn != nullptr && drawn->by_cells) || traits_of(layer).in_plane;
+  const Population* drawn = find_population(layer);
+  return (drawn != nullptr && drawn->by_cells) || layer_traits(layer).in_plane;
 }
 
 bool is_asked_by_a_mask(const Recipe& recipe, const Layer& layer) {
   const std::string& name = std::visit([](const auto& l) -> const std::string& { return l.name; }, layer);
   return std::any_of(recipe.layers.begin(), recipe.layers.end(), [&](const Layer& other) {
-    const LayerMask* mask = mask_of(other);
+    const LayerMask* mask = find_mask(other);
     return mask != nullptr && mask->layer == name;
   });
 }
@@ -187,10 +187,10 @@ std::optional<Recipe> without_additions(const Recipe& recipe) {
 }
 
 // The field of a patch without what is added to its ground; none where nothing is added.
-std::optional<ImplicitField> field_of_ground(const MeshPart& part) {
+std::optional<ImplicitField> make_ground_field(const MeshPart& part) {
   const std::optional<Recipe> ground = without_additions(part.recipe);
   if (!ground) return std::nullopt;
-  return field_of_region(*ground, part.file, part.region);
+  return make_region_field(*ground, part.file, part.region);
 }
 
 // The point of the surface near the centre of a patch whose cube the surface misses, where there is one
@@ -235,7 +235,7 @@ void mesh_without_crumbs(const MeshPart& part, MeshSink& sink, const StageProgre
 
 }  // namespace
 
-Region region_of(const MeshSpec& spec) {
+Region make_region(const MeshSpec& spec) {
   Region region;
   if (!spec.patch.empty()) {
     region.is_patch = true;
@@ -276,8 +276,8 @@ void require_body(const Recipe& recipe, const fs::path& file) {
                    "with --texture WxH");
 }
 
-ImplicitField field_of_region(const Recipe& recipe, const fs::path& file, const Region& region,
-                              const Progress& progress) {
+ImplicitField make_region_field(const Recipe& recipe, const fs::path& file, const Region& region,
+                                const Progress& progress) {
   ImplicitField field(recipe, file.string(), region.cube(), progress);
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
@@ -285,28 +285,28 @@ ImplicitField field_of_region(const Recipe& recipe, const fs::path& file, const 
   return field;
 }
 
-MeshPart part_of_body(const MeshSpec& spec, const Recipe& recipe, const fs::path& file, bool needs_plane,
-                      const Progress& progress, const std::function<void(const std::string&)>& say) {
+MeshPart make_body_part(const MeshSpec& spec, const Recipe& recipe, const fs::path& file, bool needs_plane,
+                        const Progress& progress, const std::function<void(const std::string&)>& say) {
   constexpr int kMostMoves = 3;  // fine layers are known near a patch alone
-  Region asked = region_of(spec);
+  Region asked = make_region(spec);
   if (asked.is_patch) asked.center = asked.center - recipe.origin;
-  MeshPart part{spec, recipe, file, asked, field_of_region(recipe, file, asked, progress), spec.resolution};
+  MeshPart part{spec, recipe, file, asked, make_region_field(recipe, file, asked, progress), spec.resolution};
   if (!asked.is_patch) return part;
   Region& region = part.region;
   for (int move = 0; move < kMostMoves; ++move) {
     std::optional<Vec3d> beside = surface_beside_patch(part.field, region);
     if (!beside) break;
-    if (const auto ground = field_of_ground(part))
+    if (const auto ground = make_ground_field(part))
       beside = surface_beside_patch(*ground, region).value_or(*beside);
     say(fmt::format(
         "patch: no surface crosses this cube; moved by {:.4g} {} to {:.9g} {:.9g} {:.9g} on the surface",
         norm(*beside - region.center), recipe.length_unit, recipe.origin.x + beside->x,
         recipe.origin.y + beside->y, recipe.origin.z + beside->z));
     region.center = *beside;
-    part.field = field_of_region(recipe, file, region, progress);
+    part.field = make_region_field(recipe, file, region, progress);
   }
   if (!needs_plane && !region.aligned) return part;
-  if (const std::optional<ImplicitField> ground = field_of_ground(part)) place_on_ground(*ground, region);
+  if (const std::optional<ImplicitField> ground = make_ground_field(part)) place_on_ground(*ground, region);
   if (!region.plane) place_on_ground(part.field, region);
   return part;
 }

@@ -63,7 +63,7 @@ struct Region {
 
 // The region of a mesh; the centre of a patch is in the frame of the recipe's file. Throws InputError for a
 // tile that does not exist, a side that is not above 0, and numbers that are not finite or beyond kMaxNumber.
-Region region_of(const MeshSpec& spec);
+Region make_region(const MeshSpec& spec);
 
 enum class MeshingDevice { kCpu, kGpu };
 
@@ -87,8 +87,8 @@ void require_body(const Recipe& recipe, const std::filesystem::path& file);
 
 // The field of a recipe's body in a region. Throws InputError for a body that no point of space reaches, and
 // what ImplicitField throws.
-ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
-                              const Progress& progress = {});
+ImplicitField make_region_field(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
+                                const Progress& progress = {});
 
 // The part of the body that a spec names, with the spec's resolution. A patch whose cube the surface misses,
 // if there is surface within a fiftieth of the body, is moved onto it, of which `say` gets a line: so a place
@@ -98,11 +98,11 @@ ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path&
 // the surface misses the cube or faces no direction there is none. The ground is the recipe without what is
 // added to it, so that maps of a patch with and without additions share their pixels: where there is a
 // relief, the body and the relief without its finer levels and its fills; elsewhere all but landforms drawn
-// by cells, Gabor layers and exemplars, unless a mask asks for them. Throws InputError as region_of() and
-// field_of_region() do, and for an aligned cube whose surface faces no direction.
-MeshPart part_of_body(const MeshSpec& spec, const Recipe& recipe, const std::filesystem::path& file,
-                      bool needs_plane, const Progress& progress,
-                      const std::function<void(const std::string&)>& say);
+// by cells, Gabor layers and exemplars, unless a mask asks for them. Throws InputError as make_region() and
+// make_region_field() do, and for an aligned cube whose surface faces no direction.
+MeshPart make_body_part(const MeshSpec& spec, const Recipe& recipe, const std::filesystem::path& file,
+                        bool needs_plane, const Progress& progress,
+                        const std::function<void(const std::string&)>& say);
 
 // Names what the GPU cannot mesh of a part, in a few words. Empty where the GPU can mesh all.
 std::string lacking_on_gpu(const MeshPart& part);

@@ -99,7 +99,7 @@ class StopWhenAsked : public MeshSink {
 // What keeps a mesh from being what the certificate says; empty where it is that.
 std::string difference_from(const Job& job, const TileCertificate& tile, const fs::path& mesh) {
   if (mesh.extension() != ".ply") return "it is no .ply, and no other mesh is read here";
-  if (sha256_of_file(mesh) != tile.file_sha256) return "its bytes have another SHA-256";
+  if (file_sha256(mesh) != tile.file_sha256) return "its bytes have another SHA-256";
   const auto plane = [](const std::optional<TileSide>& side) {
     return side ? std::optional(side->z) : std::nullopt;
   };
@@ -146,7 +146,7 @@ bool confirm_meshes(Job& job, const std::vector<Tile>& tiles, const fs::path& fo
   return all_right;
 }
 
-std::string misfit_of(const TileSide& below, const TileSide& above) {
+std::string describe_misfit(const TileSide& below, const TileSide& above) {
   if (below.z != above.z) return fmt::format("they are cut at {:.9g} and {:.9g}", below.z, above.z);
   if (below.vertices != above.vertices || below.loops != above.loops)
     return fmt::format("{} vertices on {} meet {} on {}", below.vertices,
@@ -164,7 +164,7 @@ Seams check_seams(Job& job, const std::vector<Tile>& tiles) {
   for (std::size_t i = 1; i < tiles.size(); ++i) {
     if (tiles[i].number() != tiles[i - 1].number() + 1) continue;
     const std::string misfit =
-        misfit_of(*tiles[i - 1].certificate.figures.upper, *tiles[i].certificate.figures.lower);
+        describe_misfit(*tiles[i - 1].certificate.figures.upper, *tiles[i].certificate.figures.lower);
     if (misfit.empty()) {
       ++seams.certified;
       continue;
@@ -191,7 +191,7 @@ std::string missing_tiles(const std::vector<Tile>& tiles) {
   return ranges;
 }
 
-TileFigures sum_of(const std::vector<Tile>& tiles) {
+TileFigures add_figures(const std::vector<Tile>& tiles) {
   TileFigures sum;
   for (const Tile& tile : tiles) {
     sum.triangles += tile.certificate.figures.triangles;
@@ -208,7 +208,7 @@ void check_all_tiles(Job& job, const TileCheckArguments& arguments) {
   const bool true_meshes = arguments.meshes.empty() || confirm_meshes(job, tiles, arguments.meshes);
   const Seams seams = check_seams(job, tiles);
   const std::string missing = missing_tiles(tiles);
-  const TileFigures whole = sum_of(tiles);
+  const TileFigures whole = add_figures(tiles);
   const bool closed = true_meshes && missing.empty() && seams.broken == 0 && whole.triangles > 0;
   job.summary = {{"tiles", tiles.size()},
                  {"count", first.count},

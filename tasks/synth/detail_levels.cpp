@@ -16,14 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // The cells of a level along the body's longest side, where the finest mesh has `finest`.
-int resolution_of(int level, int finest) {
+int level_resolution(int level, int finest) {
   constexpr double kBorder = 2.0;  // cells that hold no surface, whatever the resolution
   return static_cast<int>(std::lround(kBorder + (finest - kBorder) / double(1 << level)));
 }
 
 // The share of the screen's height below which each level gives way to the next: where what the next one
 // leaves out is smaller than a pixel of a screen of 1080 rows. The last level is never taken away.
-std::vector<double> coverage_of(const std::vector<DetailLevel>& coarser, double diagonal) {
+std::vector<double> find_coverage(const std::vector<DetailLevel>& coarser, double diagonal) {
   constexpr double kRows = 1080.0, kMost = 0.9;
   std::vector<double> coverage;
   for (const DetailLevel& level : coarser) {
@@ -51,10 +51,10 @@ std::vector<fs::path> level_files(const fs::path& output, int levels) {
 }
 
 void check_levels(int levels, int resolution) {
-  if (levels < 2 || resolution_of(levels - 1, resolution) >= kMinResolution) return;
+  if (levels < 2 || level_resolution(levels - 1, resolution) >= kMinResolution) return;
   throw InputError(
       fmt::format("--lod: level {} would have {} cells along the body; ask for fewer levels or a finer mesh",
-                  levels - 1, resolution_of(levels - 1, resolution)));
+                  levels - 1, level_resolution(levels - 1, resolution)));
 }
 
 std::vector<DetailLevel> coarser_levels(Job& job, const MeshPart& part, int levels,
@@ -64,12 +64,12 @@ std::vector<DetailLevel> coarser_levels(Job& job, const MeshPart& part, int leve
   if (levels < 2) return coarser;
   const SurfaceTree tree(mesh);
   for (int k = 1; k < levels; ++k) {
-    const MeshPart level = part.with_cells(resolution_of(k, part.resolution));
+    const MeshPart level = part.with_cells(level_resolution(k, part.resolution));
     MeshCollector collector;
     make_body_mesh(level, collector, job.stages());
-    const SurfaceTree of_level(collector.mesh);
+    const SurfaceTree level_tree(collector.mesh);
     const SurfaceDistanceReport error =
-        surface_distance(mesh, tree, collector.mesh, of_level, kSamples, 1, job.progress("distance"));
+        surface_distance(mesh, tree, collector.mesh, level_tree, kSamples, 1, job.progress("distance"));
     coarser.push_back({std::move(collector.mesh), level.resolution, error});
   }
   return coarser;
@@ -97,13 +97,13 @@ void write_levels(Job& job, const fs::path& output, int resolution, const std::v
   job.summary["levels"] = std::move(list);
   if (level_file(output, 1) != output) {
     for (std::size_t k = 1; k < levels.size(); ++k) {
-      MeshFileInfo of_level = info;
-      of_level.skin = levels[k].skin;
-      write_mesh(*levels[k].mesh, level_file(output, static_cast<int>(k)), of_level);
+      MeshFileInfo level_tree = info;
+      level_tree.skin = levels[k].skin;
+      write_mesh(*levels[k].mesh, level_file(output, static_cast<int>(k)), level_tree);
     }
     return;
   }
-  write_mesh_levels(levels, coverage_of(coarser, mesh.bounds().diagonal()), output, info);
+  write_mesh_levels(levels, find_coverage(coarser, mesh.bounds().diagonal()), output, info);
 }
 
 }  // namespace astrolith

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kOptions{"--diameter", "--axes", "--class", "--source", "--near", "--details"};
 
-double number_of(std::string_view text, std::string_view option, std::string_view form) {
+double parse_number(std::string_view text, std::string_view option, std::string_view form) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   double number = 0.0;
@@ -36,28 +36,28 @@ struct Spread {
   std::string_view value;
   std::optional<double> deviation;
 };
-Spread spread_of(std::string_view text, std::string_view option, std::string_view form) {
+Spread parse_spread(std::string_view text, std::string_view option, std::string_view form) {
   const std::size_t at = text.find("+-");
   if (at == std::string_view::npos) return {text, {}};
-  return {text.substr(0, at), number_of(text.substr(at + 2), option, form)};
+  return {text.substr(0, at), parse_number(text.substr(at + 2), option, form)};
 }
 
 void set_diameter(const std::string& text, DrawConditions& draw) {
   constexpr std::string_view kForm = "a diameter, as in 330 or 330+-20";
-  const Spread spread = spread_of(text, "--diameter", kForm);
-  draw.diameter = number_of(spread.value, "--diameter", kForm);
+  const Spread spread = parse_spread(text, "--diameter", kForm);
+  draw.diameter = parse_number(spread.value, "--diameter", kForm);
   draw.diameter_deviation = spread.deviation.value_or(0.0);
 }
 
 void set_axes(const std::string& text, DrawConditions& draw) {
   constexpr std::string_view kForm =
       "the ratios of the axes, longest first, as in 1.4:1.1:1 or 1.4:1.1:1+-0.05";
-  const Spread spread = spread_of(text, "--axes", kForm);
+  const Spread spread = parse_spread(text, "--axes", kForm);
   if (spread.deviation) draw.axes_deviation = *spread.deviation;
   draw.axes.clear();
   for (std::string_view rest = spread.value; draw.axes.size() < 4;) {
     const std::size_t colon = rest.find(':');
-    draw.axes.push_back(number_of(rest.substr(0, colon), "--axes", kForm));
+    draw.axes.push_back(parse_number(rest.substr(0, colon), "--axes", kForm));
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }
@@ -142,7 +142,7 @@ Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& mem
   }
   if (options.details == "relief" || options.details == "auto") return recipe;
   constexpr double kFiner = 0.25;
-  const double meters = metres_of(recipe.length_unit);
+  const double meters = metres_per_unit(recipe.length_unit);
   const FinishOptions laws{std::string(known_body(member.body->diameter * meters, member.body->kind)), 0.0,
                            kFiner * finest_size(recipe)};
   return finished(job, laws, recipe, file.string(), 0.0);

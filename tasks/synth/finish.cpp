@@ -23,13 +23,13 @@ std::string measured_words(const FinishLayer& layer, const std::string& unit) {
   return fmt::format("measured down to {:.4g} {}, drawn by the same law below", layer.measured_from, unit);
 }
 
-std::string words_of(const FinishLayer& layer, const std::string& unit) {
+std::string describe(const FinishLayer& layer, const std::string& unit) {
   return fmt::format("{} of {:.4g} to {:.4g} {}, {:.3g} on a square {}: {} ({})",
                      layer.known.craters ? "craters" : "boulders", layer.least, layer.greatest, unit,
                      layer.density, unit, measured_words(layer, unit), layer.known.source);
 }
 
-nlohmann::ordered_json json_of(const FinishLayer& layer) {
+nlohmann::ordered_json to_json(const FinishLayer& layer) {
   return {{"layer", layer.layer},
           {"kind", layer.known.craters ? "craters" : "boulders"},
           {"least", layer.least},
@@ -57,8 +57,8 @@ Recipe with_landforms(Job& job, const FinishOptions& options, const Recipe& reci
   for (const FinishLayer& layer : finish.layers) require_room(layer, patch_side);
   auto layers = nlohmann::ordered_json::array();
   for (const FinishLayer& layer : finish.layers) {
-    layers.push_back(json_of(layer));
-    job.say(fmt::format("finish {}: {}", options.body, words_of(layer, recipe.length_unit)));
+    layers.push_back(to_json(layer));
+    job.say(fmt::format("finish {}: {}", options.body, describe(layer, recipe.length_unit)));
   }
   if (!finish.without_craters.empty()) {
     job.say(fmt::format("finish {}: no craters, since {}", options.body, finish.without_craters));

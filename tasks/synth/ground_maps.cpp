@@ -65,7 +65,7 @@ class VerticalLattice {
   std::vector<Vec3d> effective_;
 };
 
-double diameter_of(const PlacedBoulder& boulder) {
+double largest_axis(const PlacedBoulder& boulder) {
   return std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
 }
 
@@ -86,7 +86,7 @@ class BoulderMarks {
   }
 
   void mark(const PlacedBoulder& boulder) {
-    const double diameter = diameter_of(boulder), radius = 0.5 * diameter / map_.pixel;
+    const double diameter = largest_axis(boulder), radius = 0.5 * diameter / map_.pixel;
     const Vec3d d = boulder.center - center_ - map_.origin;
     const double x = dot(d, map_.right) / map_.pixel + 0.5 * map_.side - 0.5,
                  y = 0.5 * map_.side - 0.5 - dot(d, map_.ahead) / map_.pixel;
@@ -131,7 +131,7 @@ void mark_boulders(const std::vector<Feature>& landforms, double pixel, BoulderM
     if (landform.boulder != nullptr && is_resolved(landform, pixel)) boulders.push_back(landform.boulder);
   }
   std::stable_sort(boulders.begin(), boulders.end(), [](const PlacedBoulder* a, const PlacedBoulder* b) {
-    return diameter_of(*a) > diameter_of(*b);
+    return largest_axis(*a) > largest_axis(*b);
   });
   for (const PlacedBoulder* boulder : boulders) marks.mark(*boulder);
 }
@@ -164,15 +164,15 @@ void check_map(const fs::path& file, const std::string& option, const MeshPart& 
 
 // Where the pixels of a map lie in the body frame, and how many have no height.
 Json frame_json(const HeightMap& map, const MeshPart& part) {
-  const double metres = metres_of(part.recipe.length_unit);
+  const double metres = metres_per_unit(part.recipe.length_unit);
   std::int64_t without = 0;
   for (const float height : map.heights) without += std::isnan(height) ? 1 : 0;
   return {{"pixels", map.side},
           {"metres_per_pixel", metres * map.pixel},
-          {"origin_m", json_of(metres * (part.recipe.origin + part.region.center + map.origin))},
-          {"right", json_of(map.right)},
-          {"ahead", json_of(map.ahead)},
-          {"up", json_of(map.up)},
+          {"origin_m", to_json(metres * (part.recipe.origin + part.region.center + map.origin))},
+          {"right", to_json(map.right)},
+          {"ahead", to_json(map.ahead)},
+          {"up", to_json(map.up)},
           {"body_frame", part.recipe.frame},
           {"pixel_center",
            "origin + (i + 1/2 - pixels/2) metres_per_pixel right + (pixels/2 - (j + 1/2)) "
@@ -186,7 +186,7 @@ std::string ascii_line(const Json& frame) {
 
 void write_hazard_map(Job& job, const MeshSinks& sinks, const HeightMap& map, const MeshPart& part,
                       const SurfaceGravity& gravity) {
-  const double metres = metres_of(part.recipe.length_unit);
+  const double metres = metres_per_unit(part.recipe.length_unit);
   const int half = half_footprint(sinks.footprint, map.pixel);
   HeightMap in_metres = map;
   in_metres.pixel *= metres;
@@ -206,7 +206,7 @@ void write_hazard_map(Job& job, const MeshSinks& sinks, const HeightMap& map, co
     bands[kBands * at + 1] = plane.rms;
     bands[kBands * at + 2] = known ? 0.0f : plane.rms;
   }
-  const std::vector<Feature> landforms = features_of(part.field, part.region.cube());
+  const std::vector<Feature> landforms = list_features(part.field, part.region.cube());
   mark_boulders(landforms, map.pixel, {map, part.region.center, metres, map.pixel * (2 * half + 1), bands});
   Json frame = frame_json(map, part);
   frame["footprint_m"] = metres * map.pixel * (2 * half + 1);
@@ -246,7 +246,7 @@ void check_ground_maps(const MeshSinks& sinks, const MeshPart& part) {
 void write_ground_maps(Job& job, const MeshSinks& sinks, const MeshPart& part, const TriangleMesh& mesh,
                        const SurfaceGravity* gravity) {
   if (!sinks.has_ground_maps()) return;
-  const double metres = metres_of(part.recipe.length_unit);
+  const double metres = metres_per_unit(part.recipe.length_unit);
   const HeightMap map = height_map(mesh, *part.region.plane, part.region.size, part.resolution, metres);
   if (!sinks.height_map.empty()) {
     const Json frame = frame_json(map, part);

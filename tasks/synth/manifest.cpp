@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::string_view kBeginOfLine = R"({"member":)";
+constexpr std::string_view kLineBegin = R"({"member":)";
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
 
 bool is_entry(const json& line) {
@@ -51,7 +51,7 @@ void Manifest::read() {
     if (read_line(line)) continue;
     ++unreadable_lines_;
     // A process that died leaves the beginning of a line. Any other file is somebody's, and must not grow.
-    if (entries_.empty() && !line.starts_with(kBeginOfLine.substr(0, line.size()))) {
+    if (entries_.empty() && !line.starts_with(kLineBegin.substr(0, line.size()))) {
       throw InputError(file_.string() + ": is there, and is no manifest; name another file");
     }
   }
@@ -70,13 +70,13 @@ bool Manifest::read_line(const std::string& line) {
   return true;
 }
 
-std::string Manifest::name_of(const fs::path& file) const {
+std::string Manifest::relative_name(const fs::path& file) const {
   const fs::path folder = fs::absolute(file_).lexically_normal().parent_path();
   return fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-ManifestFile Manifest::file_of(const fs::path& file) const {
-  return {name_of(file), fs::file_size(file), sha256_of_file(file)};
+ManifestFile Manifest::describe_file(const fs::path& file) const {
+  return {relative_name(file), fs::file_size(file), file_sha256(file)};
 }
 
 bool Manifest::has(std::uint64_t member, const std::string& family,
@@ -85,14 +85,14 @@ bool Manifest::has(std::uint64_t member, const std::string& family,
   if (found == entries_.end() || found->second.family != family) return false;
   const std::vector<ManifestFile>& stated = found->second.files;
   const auto is_stated = [&](const fs::path& file) {
-    return std::ranges::find(stated, name_of(file), &ManifestFile::name) != stated.end();
+    return std::ranges::find(stated, relative_name(file), &ManifestFile::name) != stated.end();
   };
   const fs::path folder = file_.parent_path();
   const auto has_size = [&](const ManifestFile& s) {
     std::error_code error;
     return fs::is_regular_file(folder / s.name, error) && fs::file_size(folder / s.name, error) == s.bytes;
   };
-  const auto is_whole = [&](const ManifestFile& s) { return s.sha256 == sha256_of_file(folder / s.name); };
+  const auto is_whole = [&](const ManifestFile& s) { return s.sha256 == file_sha256(folder / s.name); };
   // Names and sizes first: they cost nothing.
   return std::ranges::all_of(files, is_stated) && std::ranges::all_of(stated, has_size) &&
          std::ranges::all_of(stated, is_whole);

@@ -33,8 +33,8 @@ class Manifest {
 
   int unreadable_lines() const { return unreadable_lines_; }
 
-  // Whether the member has been finished for this family with files of these names (as given to file_of) and
-  // perhaps others, which all are there still, byte for byte.
+  // Whether the member has been finished for this family with files of these names (as given to
+  // describe_file) and perhaps others, which all are there still, byte for byte.
   bool has(std::uint64_t member, const std::string& family,
            const std::vector<std::filesystem::path>& files) const;
 
@@ -42,7 +42,7 @@ class Manifest {
   bool has_other_family(const std::string& family) const;
 
   // Name, size and hash of a file that is there. Throws InputError when it cannot be read.
-  ManifestFile file_of(const std::filesystem::path& file) const;
+  ManifestFile describe_file(const std::filesystem::path& file) const;
 
   // The version of a program that made members of it and that is not this one; empty where there is none.
   std::string other_version(const std::string& version) const;
@@ -52,7 +52,7 @@ class Manifest {
   void append(const nlohmann::ordered_json& line) const;
 
  private:
-  std::string name_of(const std::filesystem::path& file) const;
+  std::string relative_name(const std::filesystem::path& file) const;
   void read();
   bool read_line(const std::string& line);
 

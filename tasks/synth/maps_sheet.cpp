@@ -55,19 +55,19 @@ SurfaceMaps look_up(const TriangleMesh& mesh, const MeshSkin& skin, const BakedM
     place.open = sample(maps.occlusion, maps.side, 1, 0, uv) / 255.0f;
     if (maps.color.empty()) return place;
     const auto linear = [&](std::size_t k) {
-      return static_cast<float>(linear_of_srgb(double{sample(maps.color, maps.side, 3, k, uv)} / 255.0));
+      return static_cast<float>(srgb_to_linear(double{sample(maps.color, maps.side, 3, k, uv)} / 255.0));
     };
     place.albedo = Vec3f{linear(0), linear(1), linear(2)};
     return place;
   };
 }
 
-RgbImage picture_of(const TriangleMesh& mesh, SurfaceMaps maps) {
+RgbImage draw_panel(const TriangleMesh& mesh, SurfaceMaps maps) {
   PreviewOptions options;
   options.width = options.height = kPanel;
   options.views = {standard_views().back()};
   options.maps = std::move(maps);
-  const auto linear = [](std::uint8_t byte) { return static_cast<float>(linear_of_srgb(byte / 255.0)); };
+  const auto linear = [](std::uint8_t byte) { return static_cast<float>(srgb_to_linear(byte / 255.0)); };
   for (const VertexColor& c : mesh.colors)
     options.vertex_colors.push_back({linear(c[0]), linear(c[1]), linear(c[2])});
   return render_preview(mesh, options);
@@ -114,7 +114,7 @@ void paste(const RgbImage& panel, int left, int top, RgbaImage16& sheet) {
 void MapsSheet::add(std::uint64_t member, std::size_t level, std::size_t levels, const TriangleMesh& mesh,
                     const MeshSkin& skin, const BakedMaps& maps) {
   Row made;
-  if (level == 0) made[kFinest] = picture_of(mesh, {});
+  if (level == 0) made[kFinest] = draw_panel(mesh, {});
   if (level + 1 == levels) {
     const auto grey = [&](const auto& map, int step) {
       return reduced(maps.side, [&map, step](std::size_t texel, std::size_t) { return map[texel] / step; });
@@ -122,8 +122,8 @@ void MapsSheet::add(std::uint64_t member, std::size_t level, std::size_t levels,
     const auto rgb = [&](const std::vector<std::uint8_t>& map) {
       return reduced(maps.side, [&map](std::size_t texel, std::size_t k) { return map[3 * texel + k]; });
     };
-    made[kCoarsest] = picture_of(mesh, {});
-    made[kMapped] = picture_of(mesh, look_up(mesh, skin, maps));
+    made[kCoarsest] = draw_panel(mesh, {});
+    made[kMapped] = draw_panel(mesh, look_up(mesh, skin, maps));
     made[kNormal] = rgb(maps.normal);
     made[kHeight] = grey(maps.height, 257);
     made[kOcclusion] = grey(maps.occlusion, 1);

@@ -44,9 +44,9 @@ class Silhouette {
     for (int j = first(std::min({a.v, b.v, c.v})); j <= last(std::max({a.v, b.v, c.v})); ++j) {
       for (int i = first(std::min({a.u, b.u, c.u})); i <= last(std::max({a.u, b.u, c.u})); ++i) {
         const double u = i + 0.5, v = j + 0.5;
-        const double of_ab = side(a, b, u, v), of_bc = side(b, c, u, v), of_ca = side(c, a, u, v);
-        const bool in =
-            (of_ab >= 0.0 && of_bc >= 0.0 && of_ca >= 0.0) || (of_ab <= 0.0 && of_bc <= 0.0 && of_ca <= 0.0);
+        const double side_ab = side(a, b, u, v), side_bc = side(b, c, u, v), side_ca = side(c, a, u, v);
+        const bool in = (side_ab >= 0.0 && side_bc >= 0.0 && side_ca >= 0.0) ||
+                        (side_ab <= 0.0 && side_bc <= 0.0 && side_ca <= 0.0);
         if (in) covered_[static_cast<std::size_t>(i) + static_cast<std::size_t>(j) * kPixels] = 1;
       }
     }
@@ -58,7 +58,7 @@ class Silhouette {
   std::vector<char> covered_;
 };
 
-nlohmann::ordered_json range_of(const std::vector<double>& values) {
+nlohmann::ordered_json range_figures(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -96,11 +96,11 @@ nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& membe
     }
   }
   return {{"members", members.size()},
-          {"mean_distance", range_of(distances)},
-          {"silhouettes", range_of(silhouettes)}};
+          {"mean_distance", range_figures(distances)},
+          {"silhouettes", range_figures(silhouettes)}};
 }
 
-std::string words_of_differences(const nlohmann::ordered_json& figures) {
+std::string describe_differences(const nlohmann::ordered_json& figures) {
   const auto range = [&](const char* name) {
     const nlohmann::ordered_json& of = figures[name];
     return fmt::format("{:.2g} % ({:.2g} to {:.2g})", 100.0 * of["mean"].get<double>(),

@@ -22,6 +22,6 @@ nlohmann::ordered_json member_differences(const std::vector<TriangleMesh>& membe
                                           const Progress& progress = {});
 
 // "two members differ by 3.1 % (0.8 to 6) of the diagonal ...", for figures that are not null.
-std::string words_of_differences(const nlohmann::ordered_json& figures);
+std::string describe_differences(const nlohmann::ordered_json& figures);
 
 }  // namespace astrolith

@@ -76,15 +76,15 @@ fs::path numbered(const fs::path& pattern, std::uint64_t member) {
 
 // The mesh job of one member.
 MeshJob numbered(MeshJob mesh, std::uint64_t member) {
-  for (const NamedFile& file : files_of(mesh.sinks)) *file.name = numbered(*file.name, member);
+  for (const NamedFile& file : list_files(mesh.sinks)) *file.name = numbered(*file.name, member);
   mesh.sinks.member = member;
   return mesh;
 }
 
 // The names of the files of a member.
-std::vector<fs::path> names_of(MeshSinks sinks) {
+std::vector<fs::path> list_names(MeshSinks sinks) {
   std::vector<fs::path> names;
-  for (const NamedFile& file : files_of(sinks)) {
+  for (const NamedFile& file : list_files(sinks)) {
     if (file.name->empty()) continue;
     names.push_back(*file.name);
     if (file.name == &sinks.height_map) names.push_back(fs::path(*file.name).replace_extension(".json"));
@@ -92,7 +92,7 @@ std::vector<fs::path> names_of(MeshSinks sinks) {
   return names;
 }
 
-// The files that the mesh job of a member has written beside those of names_of(): its levels and maps.
+// The files that the mesh job of a member has written beside those of list_names(): its levels and maps.
 std::vector<fs::path> files_beside(const fs::path& mesh, const Json& summary) {
   std::vector<fs::path> names;
   const auto add = [&](const Json& name) {
@@ -106,7 +106,7 @@ std::vector<fs::path> files_beside(const fs::path& mesh, const Json& summary) {
 
 // The SHA-256 of what all members have in common: the recipe and the options that change files. A file that
 // an option reads counts by its content.
-std::string hash_of_family(const Job& job, const Recipe& recipe) {
+std::string hash_family(const Job& job, const Recipe& recipe) {
   constexpr std::array kNoEffect{"base", "device", "members", "max-memory"};
   Recipe undescribed = recipe;
   undescribed.description.clear();
@@ -117,10 +117,10 @@ std::string hash_of_family(const Job& job, const Recipe& recipe) {
     text += name + "=";
     if (!row.reads) text += value;
     for (const fs::path& file : row.reads ? row.reads(row.words) : std::vector<fs::path>{})
-      text += sha256_of_file(file) + " ";
+      text += file_sha256(file) + " ";
     text += "\n";
   }
-  return sha256_of(text);
+  return sha256(text);
 }
 
 class MemberMaker {
@@ -131,7 +131,7 @@ class MemberMaker {
         source_(source),
         file_(request.manifest),
         manifest_(request.manifest),
-        family_(hash_of_family(job, source.recipe)) {}
+        family_(hash_family(job, source.recipe)) {}
 
   const Manifest& manifest() const { return manifest_; }
 
@@ -151,7 +151,7 @@ class MemberMaker {
   }
 
   bool is_finished(std::uint64_t member) const {
-    return manifest_.has(member, family_, names_of(numbered(mesh_, member).sinks));
+    return manifest_.has(member, family_, list_names(numbered(mesh_, member).sinks));
   }
 
   // Makes a member's files. Returns its line of the manifest.
@@ -168,11 +168,11 @@ class MemberMaker {
       PictureOptions& look = mesh.sinks.preview.look;
       if (family->any_view && !look.chooses_view(job)) {
         look.look_from(member.view);
-        line["view"] = json_of(member.view);
+        line["view"] = to_json(member.view);
       }
       if (family->any_sun && !look.chooses_sun(job)) {
         look.light_from(member.sun);
-        line["sun"] = json_of(member.sun);
+        line["sun"] = to_json(member.sun);
       }
     }
     if (mesh.sinks.wanted()) make_mesh(job, mesh, member.recipe, source_.file);
@@ -183,9 +183,9 @@ class MemberMaker {
     if (!mesh.sinks.recipe.empty()) write_loaded_recipe(member.recipe, mesh.sinks.recipe);
     if (file_.empty()) return line;
     std::vector<ManifestFile> written;
-    for (const fs::path& name : names_of(mesh.sinks)) written.push_back(manifest_.file_of(name));
+    for (const fs::path& name : list_names(mesh.sinks)) written.push_back(manifest_.describe_file(name));
     for (const fs::path& name : files_beside(mesh.sinks.file, job.summary))
-      written.push_back(manifest_.file_of(name));
+      written.push_back(manifest_.describe_file(name));
     line["files"] = to_json(written);
     line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -198,7 +198,7 @@ class MemberMaker {
   }
 
   void make_folders(std::uint64_t number) const {
-    for (const fs::path& name : names_of(numbered(mesh_, number).sinks)) {
+    for (const fs::path& name : list_names(numbered(mesh_, number).sinks)) {
       if (name.has_parent_path()) make_output_folder(name.parent_path());
     }
   }
@@ -269,11 +269,11 @@ Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range, i
 // is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
 int members_at_once(const MeshJob& mesh, std::uint64_t members) {
   constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOfTexel = 60.0, kBytesOnGpu = 1.5e9;
-  constexpr double kTrianglesOfSquare =
+  constexpr double kTrianglesPerSquare =
       5.0;  // of a mesh for the square of its resolution, with some roughness
   const MeshSpec& spec = mesh.spec;
   const double triangles =
-      spec.triangles > 0.0 ? spec.triangles : kTrianglesOfSquare * spec.resolution * spec.resolution;
+      spec.triangles > 0.0 ? spec.triangles : kTrianglesPerSquare * spec.resolution * spec.resolution;
   if (triangles > kMostTriangles || mesh.max_memory_gb > 0.0) return 1;
   double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
   const double map_bytes = kBytesOfTexel * mesh.sinks.bake * mesh.sinks.bake;
@@ -317,7 +317,7 @@ void say_differences(Job& job, const MeshJob& mesh, const MemberRange& range) {
     const Json figures = member_differences(some_meshes(sinks.file, range), job.progress("differences"));
     if (figures.is_null()) return;
     job.summary["members"]["differences"] = figures;
-    job.say(words_of_differences(figures));
+    job.say(describe_differences(figures));
   } catch (const std::exception& e) {
     if (!job.stopped()) job.say(fmt::format("note: how much members differ is not known: {}", e.what()));
   }
@@ -364,7 +364,7 @@ void declare_members_options(Job& job, MembersRequest& request) {
 void check_members(const MembersRequest& request, MeshJob mesh) {
   const bool many = !request.range.empty();
   if (many) parse_range(request.range);
-  for (const auto& [option, file] : files_of(mesh.sinks)) {
+  for (const auto& [option, file] : list_files(mesh.sinks)) {
     if (file->empty()) continue;
     if (many && !has_mark(*file))
       throw InputError(
@@ -413,7 +413,7 @@ void make_members(Job& job, const MembersRequest& request, const MeshJob& mesh, 
                         counted(static_cast<std::size_t>(unreadable), "line")));
   }
   const Tally tally = make_range(job, maker, range, members_at_once(mesh, range.end - range.begin));
-  for (const fs::path& name : names_of(first.sinks)) sync_file_system(fs::absolute(name).parent_path());
+  for (const fs::path& name : list_names(first.sinks)) sync_file_system(fs::absolute(name).parent_path());
   if (!request.manifest.empty()) sync_file_system(request.manifest);
   job.summary["members"] = {{"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
   job.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,

@@ -14,7 +14,7 @@ struct MeshEstimate {
   double step = 0.0;  // edge of a cell, length units
   double area = 0.0;  // of the coarse mesh, square length units
   double triangles = 0.0, blocks = 0.0;
-  double blocks_of_layer = 0.0;  // the most
+  double layer_blocks = 0.0;     // the most
   double seconds = 0.0;          // of one processor, without the bricks of Gabor impulses
   double list_bytes = 0.0;       // memory of the field narrowed to a block
   double own_evaluations = 0.0;  // of the field, for these figures
@@ -48,9 +48,9 @@ class MeshEstimator {
   ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
   ProbeFigures probe_or_known(const ProbedSurface& surface, int resolution, int count);
 
-  SampleGrid grid_of(int resolution) const;
+  SampleGrid sample_grid(int resolution) const;
   // The part of space in which the mesh lies: the cube of a patch, the slab of a tile.
-  Box space_of(int resolution) const;
+  Box mesh_space(int resolution) const;
 
   const MeshPart part_;
   const ImplicitField& field_ = part_.field;

@@ -83,7 +83,7 @@ class MeshOutput : public SinkList {
 
   // Paints a complete mesh.
   void paint(TriangleMesh& mesh) const {
-    if (colors_) mesh.colors = colors_->colors_of(center_, mesh);
+    if (colors_) mesh.colors = colors_->evaluate_colors(center_, mesh);
   }
 
   // Completes all files of the mesh. Before that they do not exist. Quantities, if any, are properties of the
@@ -148,7 +148,7 @@ class MeshOutput : public SinkList {
 
 // The certificate of a tile whose border has been recorded. Throws WorkError where the tile is open elsewhere
 // than in its sides.
-TileFigures figures_of_tile(TileBorder& border, const ManifoldReport& report) {
+TileFigures tile_figures(TileBorder& border, const ManifoldReport& report) {
   const std::optional<TileFigures> figures = border.figures();
   if (!figures || figures->border_vertices() != report.open_vertices)
     throw WorkError("the tile is open elsewhere than where it was cut; nothing was written");
@@ -171,11 +171,11 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
   output.add(extent);
   std::optional<TileBorder> border;
   if (!spec.tile.empty() && !spec.points && !sinks.file.empty()) {
-    const TilePlanes planes = planes_of_tile(part.field, part.resolution, region.tile);
+    const TilePlanes planes = tile_planes(part.field, part.resolution, region.tile);
     output.add(border.emplace(planes.lower, planes.upper));
   }
   BodyMeshReport made = make_body_mesh(part, output, job.stages());
-  const TileFigures of_tile = border ? figures_of_tile(*border, made.manifold) : TileFigures{};
+  const TileFigures tile_figures_made = border ? tile_figures(*border, made.manifold) : TileFigures{};
   report_making(job, part, made);
   TriangleMesh& collected = output.collected();
   if (recipe.erosion) {
@@ -188,7 +188,7 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
   std::optional<SurfaceGravity> gravity;
   std::vector<VertexValues> quantities;
   if (!spec.gravity.empty()) {
-    const BodyOfPatch body = region.is_patch ? body_of_patch(job, part) : BodyOfPatch{};
+    const PatchBody body = region.is_patch ? make_patch_body(job, part) : PatchBody{};
     gravity.emplace(job, part, region.is_patch ? body.mesh : collected);
     quantities =
         gravity->at_vertices(job, collected, region.center, region.is_patch ? body.coarse : collected);
@@ -212,16 +212,16 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
   if (border) {
     job.summary["tile"] = to_json(TileCertificate{.number = region.tile.index + 1,
                                                   .count = region.tile.count,
-                                                  .recipe_sha256 = hash_of_recipe(recipe),
+                                                  .recipe_sha256 = hash_recipe(recipe),
                                                   .resolution = part.resolution,
                                                   .length_unit = recipe.length_unit,
                                                   .file = sinks.file.filename().string(),
                                                   .file_sha256 = job.summary["sha256"],
-                                                  .figures = of_tile});
+                                                  .figures = tile_figures_made});
   }
   const std::string name = sinks.file.string();
   if (made.manifold.triangles == 0) return job.say(name + ": no surface lies in tile " + spec.tile);
-  job.say(name + ": " + words_of(spec, made.manifold) + ", " +
+  job.say(name + ": " + describe(spec, made.manifold) + ", " +
           size_words(extent.box.extent(), recipe.length_unit) + chosen.remark());
 }
 
@@ -244,8 +244,8 @@ auto on_device(Job& job, const MeshJob& mesh, MeshPart& part, ChosenDevice chose
 void make_mesh(Job& job, const MeshJob& mesh, const Recipe& recipe, const fs::path& file) {
   check_mesh(mesh, recipe, file);
   const MeshSinks& sinks = mesh.sinks;
-  MeshPart part = part_of_body(mesh.spec, recipe, file, sinks.has_ground_maps() || sinks.arrays,
-                               job.progress("landforms"), [&](const std::string& line) { job.say(line); });
+  MeshPart part = make_body_part(mesh.spec, recipe, file, sinks.has_ground_maps() || sinks.arrays,
+                                 job.progress("landforms"), [&](const std::string& line) { job.say(line); });
   // Meshes that are made to be counted are made by the device that makes the mesh.
   part.resolution = on_device(job, mesh, part, {mesh.device.has_gpu(), ""},
                               [&](const ChosenDevice&) { return choose_resolution(job, mesh, part); });
@@ -270,7 +270,7 @@ void make_mesh(Job& job, const MeshJob& mesh, const Recipe& recipe, const fs::pa
 
 void summarize_output(Job& job, const fs::path& output) {
   job.summary["peak_bytes"] = peak_bytes();
-  job.summary["sha256"] = sha256_of_file(output);
+  job.summary["sha256"] = file_sha256(output);
 }
 
 }  // namespace astrolith

@@ -66,7 +66,7 @@ struct NamedFile {
   const char* option;
   std::filesystem::path* name;
 };
-std::vector<NamedFile> files_of(MeshSinks& sinks);
+std::vector<NamedFile> list_files(MeshSinks& sinks);
 // What may be written for a mesh of this file name: its levels and its baked maps.
 std::vector<std::filesystem::path> mesh_files(const MeshSinks& sinks, const std::filesystem::path& file);
 
@@ -100,7 +100,7 @@ struct MeshCost {
   double shares = 0.0;       // of the seconds of the mesh that its vertices take
 };
 inline constexpr double kErosionTables = 90.0;  // bytes: verticals, areas, heights and edges
-MeshCost cost_of(const MeshJob& mesh, const Recipe& recipe);
+MeshCost estimate_cost(const MeshJob& mesh, const Recipe& recipe);
 
 // Makes the mesh of a recipe with a body, which was read from `file`, and its summary, or only predicts it.
 // Throws InputError where the request makes no sense, WorkError for a mesh that does not keep its promise.

@@ -14,7 +14,7 @@ namespace astrolith {
 
 namespace fs = std::filesystem;
 
-std::vector<NamedFile> files_of(MeshSinks& sinks) {
+std::vector<NamedFile> list_files(MeshSinks& sinks) {
   return {{"--output", &sinks.file},
           {"--preview", &sinks.preview.file},
           {"--preview-maps", &sinks.preview.maps},
@@ -186,7 +186,7 @@ void declare_mesh_options(Job& job, MeshJob& mesh) {
 
 void check_mesh(const MeshJob& mesh, const Recipe& recipe, const fs::path& file) {
   const MeshSpec& spec = mesh.spec;
-  const Region region = region_of(spec);
+  const Region region = make_region(spec);
   const auto refuse_eroded = [&](bool is_asked, const std::string& reason, const char* option) {
     if (!recipe.erosion || !is_asked) return;
     throw InputError(file.string() + ": erosion: " + reason + "; leave out " + option +
@@ -239,7 +239,7 @@ void check_mesh_outputs(const Job& job, const MeshJob& mesh) {
   require_writable(sinks.landforms);
 }
 
-MeshCost cost_of(const MeshJob& mesh, const Recipe& recipe) {
+MeshCost estimate_cost(const MeshJob& mesh, const Recipe& recipe) {
   // A triangle and its half vertex: half a vertex and half a normal as doubles, and a triangle; half of one
   // array is copied as it grows.
   constexpr double kCollected = 36.0 + 6.0;

@@ -34,7 +34,7 @@ double meshing_bytes(const MeshEstimate& mesh) {
   if (!(mesh.blocks > 0.0)) return 0.0;
   const double of_block = mesh.triangles / mesh.blocks;
   // Three layers keep the memory of the largest that they held, while the nodes of the next are culled.
-  return mesh.blocks_of_layer *
+  return mesh.layer_blocks *
          (3.0 * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) + 3.0 * (mesh.list_bytes + kNode) +
           of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
 }
@@ -47,7 +47,7 @@ struct BrickCost {
 
 // From the bricks that the estimate has drawn. A probe draws the bricks that reach its column, so that a
 // brick which k probes need has been drawn with the probability 1 - exp(-k).
-BrickCost cost_of_bricks(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
+BrickCost estimate_bricks(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
   BrickCost cost;
   if (mesh.probes == 0) return cost;  // all bricks have been drawn
   const FieldView& view = field.tables();
@@ -64,8 +64,9 @@ BrickCost cost_of_bricks(const ImplicitField& field, const MeshEstimate& mesh, i
     const double bricks = caches[i].drawn / (1.0 - portable::exp(-seen));
     const double bytes = bricks * caches[i].drawn_bytes / caches[i].drawn;
     // Bricks that find no room are drawn anew in each layer of blocks that needs them.
-    const double of_two_layers = bytes * std::min((reached + 3.0 * block) / field.bounds().extent().z, 1.0);
-    const double draws = of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(reached / block + 1.0, 1.0);
+    const double two_layer_bytes = bytes * std::min((reached + 3.0 * block) / field.bounds().extent().z, 1.0);
+    const double draws =
+        two_layer_bytes <= 0.9 * kMostCacheBytes ? 1.0 : std::max(reached / block + 1.0, 1.0);
     // The heaps of two or more threads have gaps.
     const double kept = bytes > kMostCacheBytes ? (threads > 1 ? 1.25 : 1.1) * kMostCacheBytes : bytes;
     cost.bytes += std::max(kept - caches[i].held_bytes, 0.0);
@@ -95,12 +96,12 @@ struct ErosionCost {
   double bytes = 0.0;  // of the gravity that it slides against, beyond its tables
 };
 
-ErosionCost cost_of_erosion(const MeshPart& part, const MeshEstimate& mesh) {
+ErosionCost estimate_erosion(const MeshPart& part, const MeshEstimate& mesh) {
   constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kCellsOfGravity = 48;
-  constexpr double kMoreOfDoubling = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
+  constexpr double kDoublingGrowth = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
   const Erosion& erosion = *part.recipe.erosion;
   const int cells = std::clamp(mesh.resolution / kCoarser, kFewestCells, kMostCells);
-  TriangleMesh coarse = coarse_mesh_of(part.field, cells);
+  TriangleMesh coarse = make_coarse_mesh(part.field, cells);
   if (coarse.triangles.empty()) return {};
   std::vector<Vec3d> up;
   ErosionCost cost;
@@ -111,7 +112,7 @@ ErosionCost cost_of_erosion(const MeshPart& part, const MeshEstimate& mesh) {
                           }) +
                           kSecondsOfVertical * mesh.triangles;
   const double ratio = std::max(mesh.triangles / double(coarse.triangles.size()), 1.0);
-  cost.slide_seconds = ratio * growth(ratio, kMoreOfDoubling) *
+  cost.slide_seconds = ratio * growth(ratio, kDoublingGrowth) *
                        timed([&] { erode(coarse, up, erosion.talus_angle, erosion.iterations); });
   const double lattice = std::min(kCellsOfGravity / double(mesh.resolution), 1.0);
   cost.bytes = std::max(kBytesOfFacet * lattice * lattice - kErosionTables, 0.0) * mesh.triangles;
@@ -121,7 +122,7 @@ ErosionCost cost_of_erosion(const MeshPart& part, const MeshEstimate& mesh) {
 // Gravity at all vertices, from some vertices of the coarse mesh.
 double gravity_seconds(const TriangleMesh& coarse, const MeshEstimate& mesh) {
   constexpr std::size_t kMostPoints = 400;
-  constexpr double kTolerance = 1e-6, kMoreOfDoubling = 0.058;
+  constexpr double kTolerance = 1e-6, kDoublingGrowth = 0.058;
   if (coarse.vertices.empty()) return 0.0;
   std::vector<Vec3d> points;
   const std::size_t stride = coarse.vertices.size() / kMostPoints + 1;
@@ -129,11 +130,11 @@ double gravity_seconds(const TriangleMesh& coarse, const MeshEstimate& mesh) {
   const double vertices = 0.5 * mesh.triangles;
   const double ratio = std::max(vertices / double(coarse.vertices.size()), 1.0);
   const PolyhedronGravity gravity(coarse);
-  return vertices / double(points.size()) * growth(ratio, kMoreOfDoubling) *
+  return vertices / double(points.size()) * growth(ratio, kDoublingGrowth) *
          timed([&] { gravity.at(points, kTolerance); });
 }
 
-int threads_of(const PlannedRun& run) {
+int thread_count(const PlannedRun& run) {
   return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
@@ -146,9 +147,9 @@ MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const Pla
   MeshEstimator estimator(part);
   const MeshEstimate estimate =
       estimator.at(spec.triangles > 0.0 ? estimator.resolution_for(spec.triangles) : spec.resolution);
-  const BrickCost bricks = cost_of_bricks(part.field, estimate, threads_of(run));
-  const MeshCost cost = cost_of(mesh, part.recipe);
-  const ErosionCost erosion = part.recipe.erosion ? cost_of_erosion(part, estimate) : ErosionCost{};
+  const BrickCost bricks = estimate_bricks(part.field, estimate, thread_count(run));
+  const MeshCost cost = estimate_cost(mesh, part.recipe);
+  const ErosionCost erosion = part.recipe.erosion ? estimate_erosion(part, estimate) : ErosionCost{};
   const double gravity = spec.gravity.empty() ? 0.0 : gravity_seconds(estimator.coarse(), estimate);
   const double peak_after = static_cast<double>(peak_bytes());
   give_back_freed_memory();
@@ -167,7 +168,7 @@ MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const Pla
   // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
   // is nearer to the clock on idle cores.
   predicted.seconds =
-      std::min(run.clock_seconds, run.processor_seconds) + parallel / threads_of(run) + serial;
+      std::min(run.clock_seconds, run.processor_seconds) + parallel / thread_count(run) + serial;
   predicted.processor_seconds = run.processor_seconds + parallel + serial;
   predicted.own_evaluations = estimate.own_evaluations;
   predicted.own_seconds = processor_seconds() - start;
@@ -177,7 +178,7 @@ MeshPrediction predict_mesh(const MeshJob& mesh, const MeshPart& part, const Pla
 void require_memory(const MeshJob& mesh, const Recipe& recipe, const MeshPrediction& predicted,
                     double limit) {
   if (predicted.peak_bytes <= limit) return;
-  const bool collected = cost_of(mesh, recipe).held_bytes > 0.0;
+  const bool collected = estimate_cost(mesh, recipe).held_bytes > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",

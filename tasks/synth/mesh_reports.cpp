@@ -13,7 +13,7 @@
 namespace astrolith {
 namespace {
 
-std::string name_of(const Layer& layer) {
+std::string layer_name(const Layer& layer) {
   return std::visit([](const auto& l) { return l.name; }, layer);
 }
 
@@ -23,7 +23,7 @@ std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
   if (left.landforms > 0.0) share = fmt::format("{:.3g} of its landforms, {}", left.landforms, share);
   if (left.layer < 0) return "body.warp (" + share + ")";
   const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
-  const std::string name = name_of(layer);
+  const std::string name = layer_name(layer);
   return fmt::format("layers[{}]{} ({}, {})", left.layer, name.empty() ? "" : " \"" + name + "\"",
                      type_word(layer), share);
 }
@@ -35,8 +35,8 @@ bool repeats_an_image(const LayerLeftOut& left, const Recipe& recipe) {
   return std::holds_alternative<ExemplarLayer>(layer) || std::holds_alternative<ReliefLayer>(layer);
 }
 
-std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const ImplicitField& field,
-                      bool is_patch) {
+std::string explain(const LayerLeftOut& left, const Recipe& recipe, const ImplicitField& field,
+                    bool is_patch) {
   if (left.landforms > 0.0) {
     return is_patch ? "smaller than 8 spacings of float coordinates"
                     : "more than the 2e5 landforms that a whole body gets";
@@ -69,13 +69,13 @@ void report_layers_left_out(Job& job, const MeshPart& part) {
   auto list = nlohmann::ordered_json::array();
   std::map<std::string, std::string> words;  // by reason
   for (const LayerLeftOut& left : field.left_out()) {
-    const std::string reason = reason_of(left, recipe, field, is_patch);
+    const std::string reason = explain(left, recipe, field, is_patch);
     nlohmann::ordered_json entry;
     if (left.layer < 0) {
       entry = {{"layer", nullptr}, {"name", ""}, {"type", "body warp"}};
     } else {
       const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
-      entry = {{"layer", left.layer}, {"name", name_of(layer)}, {"type", std::string(type_word(layer))}};
+      entry = {{"layer", left.layer}, {"name", layer_name(layer)}, {"type", std::string(type_word(layer))}};
     }
     entry["reason"] = reason;
     entry["finest_length"] = left.finest;
@@ -146,12 +146,12 @@ void report_mesh(Job& job, const MeshJob& mesh, const MeshPart& part, const Body
   job.summary["active_blocks"] = made.statistics.active_blocks;
   job.summary["total_blocks"] = made.statistics.total_blocks;
   if (region.is_patch || !(part.recipe.origin == Vec3d{})) {
-    job.summary["origin"] = json_of(part.recipe.origin + region.center);
+    job.summary["origin"] = to_json(part.recipe.origin + region.center);
   }
   if (region.axes) {
-    job.summary["patch_axes"] = {{"right", json_of(region.axes->right)},
-                                 {"ahead", json_of(region.axes->ahead)},
-                                 {"up", json_of(region.axes->up)}};
+    job.summary["patch_axes"] = {{"right", to_json(region.axes->right)},
+                                 {"ahead", to_json(region.axes->ahead)},
+                                 {"up", to_json(region.axes->up)}};
   }
   if (!region.is_cut()) question_pieces(job, part, report.components);
   if (!has_colors(part.recipe)) return;
@@ -162,7 +162,7 @@ void report_mesh(Job& job, const MeshJob& mesh, const MeshPart& part, const Body
   }
 }
 
-std::string words_of(const MeshSpec& spec, const ManifoldReport& report) {
+std::string describe(const MeshSpec& spec, const ManifoldReport& report) {
   const std::string triangles = spec.points ? std::to_string(report.vertices) + " points of a mesh that is "
                                             : std::to_string(report.triangles) + " triangles, ";
   if (!report.closed()) {

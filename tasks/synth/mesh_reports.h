@@ -23,6 +23,6 @@ void report_erosion(Job& job, const Erosion& erosion, const ErosionStatistics& d
 void report_mesh(Job& job, const MeshJob& mesh, const MeshPart& part, const BodyMeshReport& made);
 
 // "21768 triangles, closed, manifold, genus 0, 1 component".
-std::string words_of(const MeshSpec& spec, const ManifoldReport& report);
+std::string describe(const MeshSpec& spec, const ManifoldReport& report);
 
 }  // namespace astrolith

@@ -67,7 +67,7 @@ fs::path program_prefix() {
 void check_page(const Recipe& recipe, const fs::path& file, const std::vector<fs::path>& prefixes) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     const Layer& layer = recipe.layers[i];
-    if (image_of(layer) == nullptr || std::holds_alternative<ReliefLayer>(layer)) continue;
+    if (find_image(layer) == nullptr || std::holds_alternative<ReliefLayer>(layer)) continue;
     throw InputError(file.string() + ": layers[" + std::to_string(i) +
                      "].image: is a file, which a page cannot read; leave out --page, or this layer");
   }

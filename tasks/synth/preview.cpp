@@ -28,11 +28,11 @@ namespace astrolith {
 namespace {
 
 Vec3f linear_color(const VertexColor& color) {
-  const auto linear = [](std::uint8_t byte) { return static_cast<float>(linear_of_srgb(byte / 255.0)); };
+  const auto linear = [](std::uint8_t byte) { return static_cast<float>(srgb_to_linear(byte / 255.0)); };
   return {linear(color[0]), linear(color[1]), linear(color[2])};
 }
 
-PixelSize size_of_maps(const std::string& text) {
+PixelSize parse_maps_size(const std::string& text) {
   return parse_pixel_size("--maps-size", text, kLeastPictureSide, kMostPictureSide);
 }
 
@@ -52,7 +52,7 @@ PreviewOptions maps_options(const Job& job, const PreviewRequest& request, const
   PreviewOptions options = picture_options(job, request, mesh, "");
   options.marks = {};
   if (request.maps_size.empty()) return options;
-  const PixelSize size = size_of_maps(request.maps_size);
+  const PixelSize size = parse_maps_size(request.maps_size);
   options.width = size.width;
   options.height = size.height;
   return options;
@@ -137,8 +137,8 @@ void copy(zip_source_t* packed, const std::filesystem::path& file) {
 void write_npz(std::span<const NpzArray> arrays, const std::filesystem::path& file) {
   std::vector<std::string> contents;
   for (const NpzArray& array : arrays) {
-    const std::size_t bytes_of_one = static_cast<std::size_t>(array.type.back() - '0');
-    if (array.values.size() != npy_size(array.shape) * bytes_of_one)
+    const std::size_t value_bytes = static_cast<std::size_t>(array.type.back() - '0');
+    if (array.values.size() != npy_size(array.shape) * value_bytes)
       throw WorkError(file.string() + ": " + array.name + ": the array does not have the stated shape");
     contents.push_back(npy_bytes(array));
   }
@@ -245,7 +245,7 @@ void check_preview(const Job& job, const PreviewRequest& request) {
   }
   if (!request.maps_size.empty()) {
     if (!has_maps) throw InputError("--maps-size: is about maps; add --preview-maps FILE.npz");
-    size_of_maps(request.maps_size);
+    parse_maps_size(request.maps_size);
   }
   if (has_picture) {
     require_extension(request.file, {".png"});
@@ -261,7 +261,7 @@ void require_cameras_outside(const Job& job, const PreviewRequest& request, cons
   if (request.file.empty() || !request.look.has_pinholes()) return;
   constexpr int kCells = 32;  // along the longest side of the body
   MeshStatistics made;
-  const TriangleMesh coarse = coarse_mesh_of(field, kCells, &made);
+  const TriangleMesh coarse = make_coarse_mesh(field, kCells, &made);
   if (coarse.triangles.empty()) return;
   // Cameras that stand by the body's box are known to about a cell.
   const double deep = 2.0 * made.step;

@@ -26,9 +26,9 @@ void check_gravity(const std::vector<double>& density_and_period, const Recipe& 
     throw InputError("--gravity: a recipe in px has no size; state m or km in it");
 }
 
-BodyOfPatch body_of_patch(const Job& job, const MeshPart& patch) {
+PatchBody make_patch_body(const Job& job, const MeshPart& patch) {
   constexpr int kCells = 256, kCoarseCells = 64;
-  const ImplicitField field = field_of_region(patch.recipe, patch.file, {});
+  const ImplicitField field = make_region_field(patch.recipe, patch.file, {});
   const auto meshed = [&](int cells) {
     MeshCollector body;
     mesh_field(field, field.bounds(), cells, body, job.progress("body"));
@@ -39,7 +39,7 @@ BodyOfPatch body_of_patch(const Job& job, const MeshPart& patch) {
 
 SurfaceGravity::SurfaceGravity(const Job& job, const MeshPart& part, const TriangleMesh& body)
     : density_(part.spec.gravity[0]),
-      metres_(metres_of(part.recipe.length_unit)),
+      metres_(metres_per_unit(part.recipe.length_unit)),
       gravity_(body, {}, job.progress("tree")),
       job_(job) {
   const double period = part.spec.gravity[1];
@@ -47,13 +47,13 @@ SurfaceGravity::SurfaceGravity(const Job& job, const MeshPart& part, const Trian
   rotation_.rate = period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * period) : 0.0;
 }
 
-std::vector<PointGravity> SurfaceGravity::values_of(std::span<const Vec3d> points,
-                                                    std::span<const Attraction> attractions) const {
+std::vector<PointGravity> SurfaceGravity::find_values(std::span<const Vec3d> points,
+                                                      std::span<const Attraction> attractions) const {
   return point_gravity(in_metres(points, metres_), attractions, density_, metres_, rotation_);
 }
 
 std::vector<PointGravity> SurfaceGravity::at(std::span<const Vec3d> points) const {
-  return values_of(points, gravity_.at(points, kTolerance, job_.progress("gravity")));
+  return find_values(points, gravity_.at(points, kTolerance, job_.progress("gravity")));
 }
 
 std::vector<VertexValues> SurfaceGravity::at_vertices(Job& job, const TriangleMesh& mesh, const Vec3d& center,
@@ -61,7 +61,7 @@ std::vector<VertexValues> SurfaceGravity::at_vertices(Job& job, const TriangleMe
   GravityPlaces places = vertex_places(mesh);
   for (Vec3d& p : places.points) p += center;
   const std::vector<Attraction> attractions = gravity_.at(places.points, kTolerance, job.progress("gravity"));
-  const std::vector<PointGravity> values = values_of(places.points, attractions);
+  const std::vector<PointGravity> values = find_values(places.points, attractions);
   const GravityPlaces of_body = &mesh == &body ? GravityPlaces{} : vertex_places(body);
   const SurfaceMeans means =
       &mesh == &body ? surface_means(values, places.areas) : surface_means(at(of_body.points), of_body.areas);

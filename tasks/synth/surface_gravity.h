@@ -20,10 +20,10 @@ void check_gravity(const std::vector<double>& density_and_period, const Recipe& 
 
 // The whole body of a patch, in the recipe's coordinates: with so many cells along its longest side that its
 // gravity at the patch is right to .05 degrees (docs/gravity.md), and coarser for means over its surface.
-struct BodyOfPatch {
+struct PatchBody {
   TriangleMesh mesh, coarse;
 };
-BodyOfPatch body_of_patch(const Job& job, const MeshPart& patch);
+PatchBody make_patch_body(const Job& job, const MeshPart& patch);
 
 // The gravity of a closed mesh in the recipe's coordinates, to 1e-6 of the acceleration.
 class SurfaceGravity {
@@ -40,8 +40,8 @@ class SurfaceGravity {
                                         const TriangleMesh& body) const;
 
  private:
-  std::vector<PointGravity> values_of(std::span<const Vec3d> points,
-                                      std::span<const Attraction> attractions) const;
+  std::vector<PointGravity> find_values(std::span<const Vec3d> points,
+                                        std::span<const Attraction> attractions) const;
 
   double density_, metres_;
   PolyhedronGravity gravity_;

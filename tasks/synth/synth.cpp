@@ -146,11 +146,11 @@ void declare_options(Job& job, SynthOptions& options) {
       .placeholder("FILE.png")
       .writes();
   // A texture has its own options; all others are of the mesh.
-  static constexpr const char* kOfTextures[] = {
+  static constexpr const char* kTextureOptions[] = {
       "recipe",       "output",  "base",       "base-lengths", "seed", "threads", "quiet", "summary", "count",
       "write-recipe", "texture", "texture-of", "tileable",     "bits", "members", "out",   "manifest"};
   for (const auto& row : job.options.rows()) {
-    if (std::ranges::find(kOfTextures, row->name()) == std::end(kOfTextures))
+    if (std::ranges::find(kTextureOptions, row->name()) == std::end(kTextureOptions))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
   for (const char* of_one : {"--texture", "--tile", "--page"}) {
@@ -187,7 +187,7 @@ Recipe loaded_input(const Job& job, const SynthOptions& options) {
   Recipe recipe = parse_recipe(options.caller.recipe, options.recipe.string());
   load_images(recipe, {}, options.recipe.string());
   for (Layer& layer : recipe.layers) {
-    const NamedImage* const named = image_of(layer);
+    const NamedImage* const named = find_image(layer);
     if (named != nullptr && !named->image.empty()) job.options.require_not_written(named->image);
   }
   return recipe;
@@ -197,7 +197,7 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
   Recipe recipe = loaded_input(job, options);
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
-                         base_lengths_of(options.base_lengths));
+                         parse_base_lengths(options.base_lengths));
   }
   if (options.like) {
     change_reliefs(recipe, options.recipe, "--like draws for other places",
@@ -219,10 +219,10 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
 }
 
 // The mesh that variations are to be like.
-TriangleMesh target_of(const Job& job, const SynthOptions& options, const Recipe& recipe) {
+TriangleMesh load_target(const Job& job, const SynthOptions& options, const Recipe& recipe) {
   const Provenance& origin = recipe.provenance;
   if (options.target.empty()) return mesh_for_comparison(recipe);
-  if (!origin.input_sha256.empty() && sha256_of_file(options.target) != origin.input_sha256) {
+  if (!origin.input_sha256.empty() && file_sha256(options.target) != origin.input_sha256) {
     job.say("note: " + options.target.string() + " is not the file that the recipe was fitted to, " +
             origin.input_name);
   }
@@ -232,7 +232,7 @@ TriangleMesh target_of(const Job& job, const SynthOptions& options, const Recipe
 }
 
 Recipe varied(Job& job, const SynthOptions& options, const Recipe& recipe, std::uint64_t seed) {
-  const TriangleMesh target = target_of(job, options, recipe);
+  const TriangleMesh target = load_target(job, options, recipe);
   const SimilarityMeasure similarity =
       target.triangles.empty() ? SimilarityMeasure() : similarity_with(target);
   Variation variation = find_variation(recipe, similarity, options.vary, seed, job.progress("vary"));
@@ -241,7 +241,7 @@ Recipe varied(Job& job, const SynthOptions& options, const Recipe& recipe, std::
   job.summary["similarity_with"] = options.target.empty() ? "recipe" : "target";
   job.summary["variation"] = figures_of(variation);
   job.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", seed, variation.similarity, whose,
-                      words_of(variation)));
+                      describe(variation)));
   return std::move(variation.recipe);
 }
 
@@ -277,7 +277,7 @@ void check_outputs(const Job& job, const SynthOptions& options) {
 }
 
 // Refuses members that would not differ as the options say.
-void check_members_of(const Job& job, const Recipe& recipe) {
+void check_member_options(const Job& job, const Recipe& recipe) {
   if (!recipe.family && !recipe.population && job.options.option("--seed").count() > 0)
     throw InputError(
         "--seed: bodies of --members have their numbers as seeds, but for those of a family; leave "
@@ -328,7 +328,7 @@ void synthesize(Job& job, const SynthOptions& options) {
                            ? recipe
                            : finished(job, options.finish, recipe, file.string(), patch_side);
   if (has_members) {
-    check_members_of(job, recipe);
+    check_member_options(job, recipe);
     const auto draw = [&](Job& part, std::uint64_t number) {
       if (recipe.population) {
         FamilyMember member = family_member(recipe, number);

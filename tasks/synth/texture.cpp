@@ -31,7 +31,7 @@ std::size_t first_colored_layer(const Recipe& recipe) {
 // The index of the first layer that a plane can show.
 std::size_t first_plane_layer(const Recipe& recipe, const std::string& file) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    if (traits_of(recipe.layers[i]).in_plane) return i;
+    if (layer_traits(recipe.layers[i]).in_plane) return i;
   }
   throw InputError(
       file + ": layers: hold no Gabor or exemplar layer, which a texture draws; make one with fit_gabor");
@@ -58,7 +58,7 @@ Result with_plane_layer(const Layer& layer, const Use& use) {
 }
 
 // The side of a pixel of a layer that a plane can show, length units.
-double pixel_size_of(const Layer& layer) {
+double layer_pixel_size(const Layer& layer) {
   return with_plane_layer<double>(layer, [](const auto& l) { return l.pixel_size; });
 }
 
@@ -133,7 +133,7 @@ PlaneMaterial draw_material(const Recipe& recipe, const std::string& file, const
   const Layer& layer = recipe.layers[first];
   TextureDrawing drawing(recipe, file, request, progress);
   PlaneMaterial material;
-  material.pixel_size = pixel_size_of(layer);
+  material.pixel_size = layer_pixel_size(layer);
   material.height = drawing.heights(first);
   if (!material.height.has_height) {
     throw InputError(place + ".height_rms: is 0, and a material needs a relief; state the height");

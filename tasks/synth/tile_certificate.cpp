@@ -29,10 +29,10 @@ Json side_to_json(const TileSide& side) {
   return {{"z", side.z}, {"vertices", side.vertices}, {"loops", side.loops}, {"sha256", side.sha256}};
 }
 
-std::string checksum_of(const Json& certificate) {
+std::string make_checksum(const Json& certificate) {
   Json stated = certificate;
   stated.erase("checksum");
-  return sha256_of(stated.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return sha256(stated.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 // Reads the fields of an object of a summary. Failures name the file and the field.
@@ -146,18 +146,18 @@ Json parse_summary(const fs::path& file) {
 
 }  // namespace
 
-TilePlanes planes_of_tile(const ImplicitField& field, int resolution, MeshTile tile) {
+TilePlanes tile_planes(const ImplicitField& field, int resolution, MeshTile tile) {
   const SampleGrid grid = make_sample_grid(field.bounds(), resolution);
-  const CellWindow window = window_of_tile<kBlockCells>(grid, tile);
+  const CellWindow window = tile_window<kBlockCells>(grid, tile);
   TilePlanes planes;
   if (tile.index > 0) planes.lower = grid.z(window.first[2] - 1);
   if (tile.index + 1 < tile.count) planes.upper = grid.z(window.last[2]);
   return planes;
 }
 
-std::string hash_of_recipe(Recipe recipe) {
+std::string hash_recipe(Recipe recipe) {
   recipe.description.clear();
-  return sha256_of(recipe_to_json(recipe));
+  return sha256(recipe_to_json(recipe));
 }
 
 Json to_json(const TileCertificate& tile) {
@@ -175,7 +175,7 @@ Json to_json(const TileCertificate& tile) {
                {"volume", figures.volume}};
   if (figures.lower) json["lower"] = side_to_json(*figures.lower);
   if (figures.upper) json["upper"] = side_to_json(*figures.upper);
-  json["checksum"] = checksum_of(json);
+  json["checksum"] = make_checksum(json);
   return json;
 }
 

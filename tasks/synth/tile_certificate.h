@@ -30,9 +30,9 @@ struct TilePlanes {
 };
 
 // Throws InputError for a tile that does not exist at this resolution.
-TilePlanes planes_of_tile(const ImplicitField& field, int resolution, MeshTile tile);
+TilePlanes tile_planes(const ImplicitField& field, int resolution, MeshTile tile);
 
-std::string hash_of_recipe(Recipe recipe);
+std::string hash_recipe(Recipe recipe);
 
 nlohmann::ordered_json to_json(const TileCertificate& certificate);
 

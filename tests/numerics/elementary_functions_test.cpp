@@ -30,7 +30,7 @@ TEST(ScalarMath, ExpAtItsEnds) {
 
 TEST(ScalarMath, ExpWithinItsRangeHasTheBitsOfExp) {
   for (float x = -87.0f; x <= 88.0f; x += 0.000917f) {
-    ASSERT_EQ(math::bits_of(math::exp_within_range(x)), math::bits_of(math::exp(x))) << x;
+    ASSERT_EQ(math::to_bits(math::exp_within_range(x)), math::to_bits(math::exp(x))) << x;
   }
 }
 
@@ -96,7 +96,7 @@ TEST(ScalarMath, VectorisedLoopGivesTheBitsOfOneCall) {
     float single;
     const float xi = one;
     evaluate_all(&xi, &single, 1);
-    ASSERT_EQ(math::bits_of(single), math::bits_of(y[i])) << x[i];
+    ASSERT_EQ(math::to_bits(single), math::to_bits(y[i])) << x[i];
   }
 }
 

@@ -17,12 +17,12 @@
 namespace astrolith {
 namespace {
 
-std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+std::uint32_t to_bits(float x) { return std::bit_cast<std::uint32_t>(x); }
 
 void expect_fma(float a, float b, float c) {
   const float right = std::fma(a, b, c), got = emulated_fma(a, b, c);
   if (std::isnan(right) && std::isnan(got)) return;
-  EXPECT_EQ(bits_of(got), bits_of(right)) << a << " * " << b << " + " << c;
+  EXPECT_EQ(to_bits(got), to_bits(right)) << a << " * " << b << " + " << c;
 }
 
 TEST(EmulatedFma, RoundsOnceForAnyBits) {

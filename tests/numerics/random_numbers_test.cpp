@@ -65,10 +65,10 @@ TEST(RankedValue, IsTheOneAtItsPlaceOfTheSortedValues) {
 }
 
 TEST(SampleStatistics, MeanAndVariance) {
-  EXPECT_EQ(mean_of(std::vector<float>{1.0f, 2.0f, 6.0f}), 3.0);
-  EXPECT_EQ(variance_of(std::vector<double>{1.0, 3.0}), 1.0);
-  EXPECT_EQ(variance_of(std::vector<double>{}), 0.0);
-  EXPECT_EQ(sum_of_products(std::vector<double>{1.0, 2.0}, std::vector<double>{3.0, 4.0}), 11.0);
+  EXPECT_EQ(sample_mean(std::vector<float>{1.0f, 2.0f, 6.0f}), 3.0);
+  EXPECT_EQ(sample_variance(std::vector<double>{1.0, 3.0}), 1.0);
+  EXPECT_EQ(sample_variance(std::vector<double>{}), 0.0);
+  EXPECT_EQ(dot_product(std::vector<double>{1.0, 2.0}, std::vector<double>{3.0, 4.0}), 11.0);
 }
 
 TEST(RankedValue, MediansAreTheUpperOfTwo) {

@@ -105,7 +105,7 @@ TEST(Box, HoldsItsPointsButNoneThatIsNoNumber) {
   EXPECT_EQ(box.max, (Vec3d{1, 5, 1}));
   EXPECT_EQ(box.longest_side(), 3.0);
   const Box other{{0, 0, 0}, {4, 4, 4}};
-  EXPECT_EQ(box_of_both(box, other).max, (Vec3d{4, 5, 4}));
+  EXPECT_EQ(united(box, other).max, (Vec3d{4, 5, 4}));
   EXPECT_EQ(common_part(box, other).min, (Vec3d{0, 2, 0}));
 }
 

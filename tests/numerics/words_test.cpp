@@ -5,11 +5,11 @@ namespace astrolith {
 namespace {
 
 TEST(LengthUnit, HasMetres) {
-  EXPECT_EQ(metres_of("km"), 1e3);
-  EXPECT_EQ(metres_of("m"), 1.0);
-  EXPECT_EQ(metres_of("cm"), 1e-2);
-  EXPECT_EQ(metres_of("mm"), 1e-3);
-  EXPECT_EQ(metres_of("px"), 1.0);
+  EXPECT_EQ(metres_per_unit("km"), 1e3);
+  EXPECT_EQ(metres_per_unit("m"), 1.0);
+  EXPECT_EQ(metres_per_unit("cm"), 1e-2);
+  EXPECT_EQ(metres_per_unit("mm"), 1e-3);
+  EXPECT_EQ(metres_per_unit("px"), 1.0);
 }
 
 TEST(LengthUnit, IsKnownOrNot) {

@@ -95,10 +95,10 @@ std::vector<Layer> one_of_each_kind(const std::variant<Kinds...>*) {
 
 TEST(LayerTraits, TellWhatALayerHas) {
   for (const Layer& layer : one_of_each_kind(static_cast<const Layer*>(nullptr))) {
-    const LayerTraits traits = traits_of(layer);
-    EXPECT_EQ(use_of(layer) != nullptr, traits.is_noise) << type_word(layer);
+    const LayerTraits traits = layer_traits(layer);
+    EXPECT_EQ(find_use(layer) != nullptr, traits.is_noise) << type_word(layer);
     const std::string_view word = type_word(layer);
-    EXPECT_EQ(image_of(layer) != nullptr, word == "exemplar" || word == "relief") << word;
+    EXPECT_EQ(find_image(layer) != nullptr, word == "exemplar" || word == "relief") << word;
     EXPECT_FALSE(has_color(layer)) << word;
     EXPECT_EQ(has_height(layer), word != "exemplar" && word != "gabor") << word;
   }
@@ -106,10 +106,10 @@ TEST(LayerTraits, TellWhatALayerHas) {
 
 TEST(LayerTraits, APopulationBelongsToLandforms) {
   CraterLayer craters;
-  EXPECT_EQ(population_of(Layer(craters)), nullptr);
+  EXPECT_EQ(find_population(Layer(craters)), nullptr);
   craters.population.emplace();
-  EXPECT_NE(population_of(Layer(craters)), nullptr);
-  EXPECT_EQ(population_of(Layer(FractalLayer{})), nullptr);
+  EXPECT_NE(find_population(Layer(craters)), nullptr);
+  EXPECT_EQ(find_population(Layer(FractalLayer{})), nullptr);
 }
 
 TEST(LayerTraits, AnExemplarPaintsUnlessItOnlyServesOthers) {
@@ -144,7 +144,8 @@ Recipe with_relief(int levels = 91) {
   for (int y = 2; y < 28; ++y) {
     for (int x = 3; x < 36; ++x) {
       const int code = (x * x + 7 * y + 3 * x * y) % levels;
-      image.values[static_cast<std::size_t>(40 * y + x)] = layer.value_of(static_cast<std::uint16_t>(code));
+      image.values[static_cast<std::size_t>(40 * y + x)] =
+          layer.code_to_grey(static_cast<std::uint16_t>(code));
     }
   }
   layer.pixels = std::make_shared<ExemplarImage>(image);
@@ -178,11 +179,11 @@ TEST(ReliefText, GreyValuesAndCodesAreEachOthers) {
     ReliefLayer layer;
     layer.levels = levels;
     for (int code = 0; code < levels; ++code) {
-      const std::uint16_t value = layer.value_of(static_cast<std::uint16_t>(code));
+      const std::uint16_t value = layer.code_to_grey(static_cast<std::uint16_t>(code));
       ASSERT_GT(value, 0);
-      ASSERT_EQ(layer.code_of(value), code) << levels;
+      ASSERT_EQ(layer.grey_to_code(value), code) << levels;
     }
-    EXPECT_EQ(layer.value_of(static_cast<std::uint16_t>(levels - 1)), 65535);
+    EXPECT_EQ(layer.code_to_grey(static_cast<std::uint16_t>(levels - 1)), 65535);
   }
 }
 

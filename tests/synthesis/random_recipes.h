@@ -157,7 +157,7 @@ inline void add_layer(Recipe& recipe, Layer layer, CounterRandom& random) {
   const int number = static_cast<int>(recipe.layers.size());
   if (std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer)) {
     for (Layer& before : recipe.layers) {
-      LayerUse* use = use_of(before);
+      LayerUse* use = find_use(before);
       if (use != nullptr && use->combination.kind == Combine::kWarp) use->combination.kind = Combine::kAdd;
     }
   }
@@ -165,7 +165,7 @@ inline void add_layer(Recipe& recipe, Layer layer, CounterRandom& random) {
       [&](auto& l) {
         l.name = std::to_string(number);
         if constexpr (requires { l.use; }) {
-          use_somehow(l.use, number, number > 0 && use_of(recipe.layers[0]) != nullptr, random);
+          use_somehow(l.use, number, number > 0 && find_use(recipe.layers[0]) != nullptr, random);
         }
       },
       layer);
@@ -175,9 +175,9 @@ inline void add_layer(Recipe& recipe, Layer layer, CounterRandom& random) {
 // Gives some populations a weight that varies over the body, clusters, or sizes by Weibull's law.
 inline void place_somehow(Recipe& recipe, CounterRandom random) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    Population* drawn = population_of(recipe.layers[i]);
+    Population* drawn = find_population(recipe.layers[i]);
     if (drawn == nullptr) continue;
-    const bool masked = i > 0 && use_of(recipe.layers[0]) != nullptr;
+    const bool masked = i > 0 && find_use(recipe.layers[0]) != nullptr;
     if (masked && random.below(2) == 0) drawn->mask = LayerMask{.layer = "0", .from = -0.005, .to = 0.005};
     if (random.below(3) == 0) drawn->locality = Locality{.group = "some", .width = 0.1};
     if (random.below(3) == 0) drawn->clusters = Clusters{.number = 2, .radius = 0.05, .share = 0.7};

@@ -46,7 +46,7 @@ ReliefLayer relief_layer(const Recipe& recipe, double spacing, double low, doubl
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double code = (height(position(places[i], spacing)) - low) / layer.step();
     image->values[layout.pixels[i]] =
-        layer.value_of(static_cast<std::uint16_t>(std::clamp(code + 0.5, 0.0, 65534.0)));
+        layer.code_to_grey(static_cast<std::uint16_t>(std::clamp(code + 0.5, 0.0, 65534.0)));
   }
   layer.pixels = std::move(image);
   return layer;

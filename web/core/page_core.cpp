@@ -35,7 +35,7 @@ Recipe recipe_in(std::string_view bytes, const std::string& name) {
 // Refuses a recipe whose layers name files, which no page has beside it.
 void require_own_pixels(const Recipe& recipe, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    const NamedImage* named = image_of(recipe.layers[i]);
+    const NamedImage* named = find_image(recipe.layers[i]);
     if (named == nullptr || named->pixels != nullptr) continue;
     throw InputError(name + ": layers[" + std::to_string(i) + "].image: " + named->image +
                      " is a file beside the recipe, which this page cannot read; use synth");
@@ -56,7 +56,7 @@ struct MeshedBody {
       : text(bytes),
         file(name),
         recipe(body_recipe_in(bytes, name)),
-        part(part_of_body(spec, recipe, file, false, host_goes_on, {})) {}
+        part(make_body_part(spec, recipe, file, false, host_goes_on, {})) {}
   MeshedBody(const MeshedBody&) = delete;
   MeshedBody& operator=(const MeshedBody&) = delete;
 
@@ -119,7 +119,7 @@ nlohmann::ordered_json figures_of(const BodyMeshReport& made, const Recipe& reci
           {"components", report.components},
           {"evaluations", made.statistics.evaluations},
           {"cell", made.statistics.step},
-          {"extent", json_of(mesh.bounds().extent())}};
+          {"extent", to_json(mesh.bounds().extent())}};
 }
 
 std::vector<float> as_floats(const std::vector<Vec3d>& places) {
@@ -146,7 +146,7 @@ void make(std::string_view text, const std::string& name, int resolution) {
       make_body_mesh(part, collector, [](const std::string&) { return host_goes_on; });
   TriangleMesh& mesh = collector.mesh;
   if (recipe.erosion) erode_body(*recipe.erosion, mesh, host_goes_on);
-  if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, part.field).colors_of({}, mesh);
+  if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, part.field).evaluate_colors({}, mesh);
   to.figures = figures_of(made, recipe, mesh).dump();
   to.info = info_of(recipe);
   to.positions = as_floats(mesh.vertices);
@@ -155,7 +155,7 @@ void make(std::string_view text, const std::string& name, int resolution) {
 }
 
 void keep_written(std::string bytes) {
-  state().sha256 = sha256_of(bytes);
+  state().sha256 = sha256(bytes);
   state().written = std::move(bytes);
 }
 

@@ -58,11 +58,11 @@ ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVar
   }
   heed_exemplar(progress, 0.8);
   const bool color = planes.size() == 3;
-  const GreyImage luma = color ? luma_of(image) : image.front();
+  const GreyImage luma = color ? luma_image(image) : image.front();
   ExemplarLayer layer;
   layer.pixels = std::make_shared<const ExemplarImage>(color ? colors_in_16_bits(image) : in_16_bits(luma));
   layer.border = variant == ExemplarVariant::kMirrored ? ExemplarBorder::kMirror : ExemplarBorder::kRepeat;
-  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(luma.values)));
+  layer.height_rms = round_to_seven_digits(std::sqrt(sample_variance(luma.values)));
   layer.color = color;
   return layer;
 }
@@ -136,12 +136,12 @@ ExemplarImage colors_in_16_bits(const std::vector<GreyImage>& planes) {
       pixel[k] = static_cast<std::uint16_t>(std::lround(65535.0 * std::clamp(planes[k].values[i], 0.0, 1.0)));
     }
     result.rgb.insert(result.rgb.end(), pixel.begin(), pixel.end());
-    result.values.push_back(luma_of(pixel[0], pixel[1], pixel[2]));
+    result.values.push_back(rgb_luma(pixel[0], pixel[1], pixel[2]));
   }
   return result;
 }
 
-GreyImage luma_of(const std::vector<GreyImage>& planes) {
+GreyImage luma_image(const std::vector<GreyImage>& planes) {
   GreyImage luma{planes[0].width, planes[0].height, {}, planes[0].missing};
   luma.values.reserve(planes[0].values.size());
   for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
@@ -159,7 +159,7 @@ std::string_view variant_word(ExemplarVariant variant) {
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed) {
   const std::vector<float> heights =
       synthesize_exemplar(layer, "exemplar", photo.width, photo.height, {seed, 0, false});
-  const double mean = mean_of(photo.values);
+  const double mean = sample_mean(photo.values);
   GreyImage texture{photo.width, photo.height, {}};
   for (const float height : heights) texture.values.push_back(mean + double{height});
   return texture;
@@ -173,7 +173,7 @@ PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& nam
 PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
                                   std::uint64_t seed, const Progress& progress) {
   require_colors(planes, name);
-  return nearest_variant(planes, luma_of(planes), name, seed, progress);
+  return nearest_variant(planes, luma_image(planes), name, seed, progress);
 }
 
 }  // namespace astrolith

@@ -27,7 +27,7 @@ ExemplarImage in_16_bits(const GreyImage& image);
 ExemplarImage colors_in_16_bits(const std::vector<GreyImage>& planes);
 
 // The luma of three planes: 0.2126 R + 0.7152 G + 0.0722 B.
-GreyImage luma_of(const std::vector<GreyImage>& planes);
+GreyImage luma_image(const std::vector<GreyImage>& planes);
 
 // The ways to continue a photo beyond its border:
 //   kPeriodic  its periodic component (Moisan 2011), which repeats without a seam

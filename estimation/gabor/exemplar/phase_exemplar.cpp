@@ -188,18 +188,18 @@ ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::st
                              std::uint64_t seed, const Progress& progress) {
   const bool color = planes.size() == 3;
   if (color) require_colors(planes, name);
-  const GreyImage photo = color ? luma_of(planes) : planes.front();
+  const GreyImage photo = color ? luma_image(planes) : planes.front();
   require_exemplar(photo, name);
   const Progress most = stretch(progress, 0.0, 0.9);
   const std::vector<GreyImage> textures =
       color ? random_phase_colors(planes, seed, most)
             : std::vector{random_texture(photo, image_sides(photo), hash_seed(seed, 0), most)};
   heed_phases(progress, 0.9);
-  const GreyImage noise = color ? luma_of(textures) : textures.front();
+  const GreyImage noise = color ? luma_image(textures) : textures.front();
   ExemplarLayer layer;
   layer.pixels =
       std::make_shared<const ExemplarImage>(color ? colors_in_16_bits(textures) : in_16_bits(noise));
-  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(noise.values)));
+  layer.height_rms = round_to_seven_digits(std::sqrt(sample_variance(noise.values)));
   layer.color = color;
   return layer;
 }

@@ -59,7 +59,7 @@ std::array<std::vector<double>, 3> responses(const GreyImage& image, double sigm
 }  // namespace
 
 TextureDistributions::Distribution TextureDistributions::distribution_of(std::vector<double> values) {
-  Distribution result{{}, std::sqrt(variance_of(values))};
+  Distribution result{{}, std::sqrt(sample_variance(values))};
   std::sort(values.begin(), values.end());
   for (int q = 0; q < kQuantiles; ++q) {
     const double at = (q + 0.5) / kQuantiles * static_cast<double>(values.size() - 1);

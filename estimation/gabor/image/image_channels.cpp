@@ -84,7 +84,7 @@ void remove_trend(GreyImage& image, int degree, TrendModel model, const std::str
 }
 
 Vec3d mean_color(const std::vector<GreyImage>& planes) {
-  return {mean_of(planes[0].values), mean_of(planes[1].values), mean_of(planes[2].values)};
+  return {sample_mean(planes[0].values), sample_mean(planes[1].values), sample_mean(planes[2].values)};
 }
 
 std::vector<ImageChannel> principal_channels(const std::vector<GreyImage>& planes,

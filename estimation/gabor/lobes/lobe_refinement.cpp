@@ -144,7 +144,7 @@ LobeMisfit::LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& tar
     : start_(std::move(start)),
       width_(target.width),
       height_(target.height),
-      total_(sum_of_products(weights, target.power)),
+      total_(dot_product(weights, target.power)),
       weights_(weights) {
   offset_ = 1e-6 * total_ / static_cast<double>(target.power.size());
   for (std::size_t i = 0; i < weights.size(); ++i) {

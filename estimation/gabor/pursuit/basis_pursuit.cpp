@@ -283,14 +283,14 @@ double largest_penalty(const GaborDictionary& dictionary, std::span<const double
 DualityCertificate::DualityCertificate(const BasisPursuitProblem& problem)
     : problem_(problem),
       column_sums_(problem.dictionary.size()),
-      squared_target_(sum_of_products(problem.target, problem.target)) {
+      squared_target_(dot_product(problem.target, problem.target)) {
   problem.dictionary.analyze(std::vector<double>(problem.dictionary.rows(), 1.0), column_sums_);
 }
 
 double DualityCertificate::scaled_bound(std::span<const double> r,
                                         std::span<const double> correlations) const {
-  const double squared_r = sum_of_products(r, r);
-  const double target_r = sum_of_products(problem_.target, r);
+  const double squared_r = dot_product(r, r);
+  const double target_r = dot_product(problem_.target, r);
   if (squared_r == 0.0) return 0.0;
   double largest = 0.0;
   for (const double c : correlations) largest = std::max(largest, c);
@@ -318,7 +318,7 @@ double DualityCertificate::translated_bound(std::span<const double> r,
 
 double DualityCertificate::check(std::span<const double> r, std::span<const double> correlations,
                                  double sum_x) {
-  primal_ = 0.5 * sum_of_products(r, r) + problem_.penalty * sum_x;
+  primal_ = 0.5 * dot_product(r, r) + problem_.penalty * sum_x;
   best_dual_ = std::max({best_dual_, scaled_bound(r, correlations), translated_bound(r, correlations)});
   const double rounding = 1e-10 * (primal_ + 0.5 * squared_target_);
   if (!(primal_ - best_dual_ >= -rounding)) {

@@ -188,7 +188,7 @@ BorderTaper taper_of(const GreyImage& image) {
 
 GreyImage faded(const GreyImage& image, const BorderTaper& taper) {
   const double weights =
-      mean_of(taper.columns) * mean_of(taper.rows) * static_cast<double>(image.values.size());
+      sample_mean(taper.columns) * sample_mean(taper.rows) * static_cast<double>(image.values.size());
   const double mean = weighted_sum(image, taper.columns, taper.rows) / weights;
   const double gain = 1.0 / std::sqrt(mean_square(taper.columns) * mean_square(taper.rows));
   GreyImage result = image;

@@ -36,7 +36,7 @@ RowSums sums_of_rows(const std::vector<GreyImage>& planes, const Progress& progr
   std::vector<std::complex<double>> half(fourier.half_size()), power(fourier.half_size());
   std::size_t rows = 0;
   for (const GreyImage& plane : planes) {
-    const double mean = mean_of(plane.values);
+    const double mean = sample_mean(plane.values);
     for (int y = 0; y < plane.height; ++y) {
       const double done = static_cast<double>(rows++) / static_cast<double>(planes.size()) / plane.height;
       if (!report(progress, done, "looking for a period")) throw WorkError("stopped; nothing is written");

@@ -74,7 +74,7 @@ class WhittleFit {
   double objective(const Spline& s) const {
     double sum = 0.0;
     for (std::size_t i = 1; i < s.g.size(); ++i) sum += s.g[i] + periodogram_.power[i] * std::exp(-s.g[i]);
-    return looks_ * sum + 0.5 * sum_of_products(s.g, s.rough);
+    return looks_ * sum + 0.5 * dot_product(s.g, s.rough);
   }
 
   std::vector<double> gradient(const Spline& s) const {
@@ -91,7 +91,7 @@ class WhittleFit {
     const std::vector<double> gradient = this->gradient(now);
     std::vector<double> step(gradient.size());
     divide_by_hessian(gradient, step);
-    const double slope = sum_of_products(gradient, step);
+    const double slope = dot_product(gradient, step);
     double trial_value = value;
     for (double length = 1.0; length > 1e-3; length *= 0.5) {
       for (std::size_t i = 0; i < step.size(); ++i) trial.g[i] = now.g[i] - length * step[i];

@@ -104,7 +104,7 @@ TaperedPower tapered_power(const GreyImage& image, int width, int height) {
   if (width > image.width) taper.fade_columns();
   if (height > image.height) taper.fade_rows();
   TaperedPower result{power_on_grid(faded(image, taper), width, height),
-                      slope_power(image, taper, width, height), variance_of(image.values)};
+                      slope_power(image, taper, width, height), sample_variance(image.values)};
   result.values.averages = result.slopes.averages = taper.looks();
   return result;
 }

@@ -114,7 +114,7 @@ ResidualTexture fit_residual_texture(const TargetBody& target, const MetaballBod
   // The height is that of the pixels: bumps wider than a patch count, since its tilt is taken out already.
   double pixels = 0.0;
   for (const GreyImage& image : images)
-    pixels += variance_of(image.values) / static_cast<double>(images.size());
+    pixels += sample_variance(image.values) / static_cast<double>(images.size());
   const double rms = std::sqrt(pixels), in_spectrum = spectrum.variance();
   if (!(rms > 1e-9 && in_spectrum > 0.0)) {
     throw InputError("residual texture: the base leaves nothing of the measured surface");

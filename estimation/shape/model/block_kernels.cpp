@@ -48,7 +48,7 @@ ASTROLITH_KERNEL double lane_exp(double x) {
   const double r = (x - n * portable::kLn2High) - n * portable::kLn2Low;
   // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 2e-16.
   return portable::exp_series(1.0 / 479001600.0, r) *
-         portable::double_of((portable::bits_of(shifted) + 1023) << 52);
+         portable::from_bits((portable::to_bits(shifted) + 1023) << 52);
 }
 
 // The coordinates of a block's points.

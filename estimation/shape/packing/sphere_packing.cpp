@@ -17,7 +17,7 @@ namespace {
 double cube(double x) { return x * x * x; }
 
 double kilograms(const PackingTable& table) {
-  return table.density * table.body_volume * cube(metres_of(table.length_unit));
+  return table.density * table.body_volume * cube(metres_per_unit(table.length_unit));
 }
 
 // Cells of the grid inside the body: this many for each sphere, so that a cell is small beside a sphere.

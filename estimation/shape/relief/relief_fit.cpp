@@ -71,19 +71,19 @@ std::vector<double> solve_relief(const ReliefBlend& blend, const Progress& progr
   };
   scale();
   std::vector<double> direction = scaled;
-  double energy = sum_of_products(residual, scaled);
+  double energy = dot_product(residual, scaled);
   const double enough = 1e-12 * energy;
   for (int i = 0; i < kIterations && energy > enough; ++i) {
     if (!report(progress, static_cast<double>(i) / kIterations, "relief")) break;
     std::vector<double> image = blend.sums(SampleSum::kBlend, direction);
     for (std::size_t p = 0; p < n; ++p) image[p] += pull * direction[p];
-    const double step = energy / sum_of_products(direction, image);
+    const double step = energy / dot_product(direction, image);
     for (std::size_t p = 0; p < n; ++p) {
       change[p] += step * direction[p];
       residual[p] -= step * image[p];
     }
     scale();
-    const double next = sum_of_products(residual, scaled);
+    const double next = dot_product(residual, scaled);
     for (std::size_t p = 0; p < n; ++p) direction[p] = scaled[p] + next / energy * direction[p];
     energy = next;
   }
@@ -159,7 +159,7 @@ std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::v
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::size_t row = layout.pixels[i] / static_cast<std::size_t>(layout.width),
                       column = layout.pixels[i] % static_cast<std::size_t>(layout.width);
-    image->values[row * static_cast<std::size_t>(image->width) + column] = layer.value_of(codes[i]);
+    image->values[row * static_cast<std::size_t>(image->width) + column] = layer.code_to_grey(codes[i]);
   }
   return image;
 }
@@ -186,7 +186,7 @@ std::size_t halve_heights(const std::vector<Vec3d>& points, Recipe& recipe) {
     std::uint16_t& value =
         image->values[layout.pixels[place] / width * static_cast<std::size_t>(image->width) +
                       layout.pixels[place] % width];
-    const std::uint16_t halved = layer.value_of(halved_code(layer, layer.code_of(value)));
+    const std::uint16_t halved = layer.code_to_grey(halved_code(layer, layer.grey_to_code(value)));
     changed += value != halved;
     value = halved;
   }

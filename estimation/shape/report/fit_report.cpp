@@ -44,20 +44,20 @@ std::vector<double> sorted_values(const LocalStatistic& statistic) {
 std::vector<std::pair<double, double>> quantile_curve(const std::vector<double>& sorted) {
   std::vector<std::pair<double, double>> curve;
   for (int percent = 1; percent <= 99; ++percent) {
-    curve.emplace_back(percent, quantile_of_sorted(sorted, 0.01 * percent));
+    curve.emplace_back(percent, sorted_quantile(sorted, 0.01 * percent));
   }
   return curve;
 }
 
 std::string heading_of(const LocalStatistic& statistic) {
-  const char* heading = traits_of(statistic.quantity).heading;
+  const char* heading = quantity_traits(statistic.quantity).heading;
   return statistic.radius > 0.0 ? fmt::format("{}, {:g} edges", heading, statistic.radius) : heading;
 }
 
 void draw_quantiles(Figure& page, const Rectangle& at, const LocalStatistic& a, const LocalStatistic& b) {
   const std::vector<double> sorted_a = sorted_values(a), sorted_b = sorted_values(b);
-  const double low = std::min(quantile_of_sorted(sorted_a, 0.01), quantile_of_sorted(sorted_b, 0.01)),
-               high = std::max(quantile_of_sorted(sorted_a, 0.99), quantile_of_sorted(sorted_b, 0.99));
+  const double low = std::min(sorted_quantile(sorted_a, 0.01), sorted_quantile(sorted_b, 0.01)),
+               high = std::max(sorted_quantile(sorted_a, 0.99), sorted_quantile(sorted_b, 0.99));
   const double room = std::max(0.05 * (high - low), 1e-9);
   const Axis x = linear_axis(0.0, 100.0, ""), y = linear_axis(low - room, high + room, "");
   page.text(at.x, at.y - 5.0, heading_of(a), 8.0);
@@ -134,8 +134,8 @@ void write_quantile_curves(const NamedSurface& a, const NamedSurface& b, const s
 // each place. The colours run from the 5 % to the 95 % quantile of the first. Throws as above.
 void write_roughness_maps(const NamedSurface& a, const NamedSurface& b, const std::filesystem::path& file) {
   const std::vector<double> sorted = sorted_values(mapped_roughness(a.statistics));
-  const double low = quantile_of_sorted(sorted, 0.05),
-               high = std::max(quantile_of_sorted(sorted, 0.95), low + 1e-6);
+  const double low = sorted_quantile(sorted, 0.05),
+               high = std::max(sorted_quantile(sorted, 0.95), low + 1e-6);
   const double radius = mapped_roughness(a.statistics).radius;
   CaptionedPicture left = roughness_map(a, low, high), right = roughness_map(b, low, high);
   left.caption += fmt::format(": roughness within {:g} edges, dark {:.2g} %, light {:.2g} % of that radius",

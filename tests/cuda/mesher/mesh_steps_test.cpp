@@ -10,7 +10,7 @@ TEST(HaloThread, VisitsEachSampleOfTheHaloOnce) {
   for (std::size_t thread = 0; thread < HaloThread::kSamples; ++thread) {
     const HaloThread t(HaloThread::kSamples + thread);
     EXPECT_EQ(t.block, 1u);
-    EXPECT_NE(owner_of(t.x, t.y, t.z), 0u);
+    EXPECT_NE(owner_index(t.x, t.y, t.z), 0u);
     visited.insert(MeshBlock::sample(t.x, t.y, t.z));
   }
   EXPECT_EQ(visited.size(), HaloThread::kSamples);

@@ -97,10 +97,10 @@ TEST(Sha256, PiecesAreTheWhole) {
 TEST(Sha256, Files) {
   const auto path = std::filesystem::temp_directory_path() / ("astrolith_sha_" + std::to_string(::getpid()));
   std::ofstream(path) << "abc";
-  EXPECT_EQ(sha256_of_file(path), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(file_sha256(path), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   std::filesystem::remove(path);
-  EXPECT_THROW(sha256_of_file(path), InputError);
-  EXPECT_THROW(sha256_of_file(std::filesystem::temp_directory_path()), InputError);
+  EXPECT_THROW(file_sha256(path), InputError);
+  EXPECT_THROW(file_sha256(std::filesystem::temp_directory_path()), InputError);
 }
 
 // Bytes that compress a little, in several pieces of a stream.

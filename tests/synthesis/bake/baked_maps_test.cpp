@@ -32,7 +32,7 @@ struct Baked {
     const AtlasTexels texels(textured());
     std::vector<TexelPlace> places(TexelTile::kMostTexels);
     for (const TexelTile& tile : texels.tiles()) {
-      texels.places_of(tile, {places.data(), tile.num_texels()});
+      texels.locate(tile, {places.data(), tile.num_texels()});
       for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
           const TexelPlace& place = places[static_cast<std::size_t>((y + 1) * tile.padded_width() + x + 1)];

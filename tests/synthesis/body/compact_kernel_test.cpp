@@ -143,7 +143,7 @@ TEST(Kernels, IntervalsHoldEveryValue) {
     for (int i = 0; i < 30; ++i) {
       const Vec3d p = testing::random_point(random, box);
       const PointValue v = evaluate_one(metaballs, p);
-      ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(reaching, p).distance));
+      ASSERT_EQ(math::to_bits(v.distance), math::to_bits(evaluate_one(reaching, p).distance));
       const double divisor = std::sqrt(squared_norm(Vec3d{v.gx, v.gy, v.gz}) +
                                        static_cast<double>(metaballs.parameters.gradient_floor));
       const double level = double{v.distance} * divisor;

@@ -75,8 +75,8 @@ TEST(MetaballBody, SubtractiveSpheresOutOfReachChangeNoBit) {
   for (int i = 0; i < 500; ++i) {
     const double x = random.uniform(-0.8, 0.8), y = random.uniform(-0.5, 0.5), z = random.uniform(-0.5, 0.5);
     const PointValue a = evaluate_one(without, {x, y, z}), b = evaluate_one(with, {x, y, z});
-    ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
-    ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));
+    ASSERT_EQ(math::to_bits(a.distance), math::to_bits(b.distance));
+    ASSERT_EQ(math::to_bits(a.gx), math::to_bits(b.gx));
   }
 }
 
@@ -114,8 +114,8 @@ TEST(MetaballBody, SpheresBeyondTheirSupportChangeNoBit) {
     for (int i = 0; i < 20; ++i) {
       const Vec3d p = testing::random_point(random, box);
       const PointValue a = evaluate_one(all, p), b = evaluate_one(reaching, p);
-      ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
-      ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));
+      ASSERT_EQ(math::to_bits(a.distance), math::to_bits(b.distance));
+      ASSERT_EQ(math::to_bits(a.gx), math::to_bits(b.gx));
     }
   }
   EXPECT_GT(dropped, 5000u);

@@ -179,7 +179,7 @@ TEST(MorphGrid, MakesOnePiece) {
   Recipe recipe;
   recipe.body = example_body();
   const ImplicitField field(recipe);
-  const MeshTopology topology = analyze_topology(coarse_mesh_of(field, 48));
+  const MeshTopology topology = analyze_topology(make_coarse_mesh(field, 48));
   EXPECT_TRUE(topology.closed);
   EXPECT_EQ(topology.components, 1);
   EXPECT_EQ(topology.genus, 0);
@@ -195,8 +195,8 @@ TEST(MorphGrid, MakesOnePiece) {
                 z = static_cast<float>(random.uniform(-30, 30));
     float value = 0.0f;
     block.evaluate({&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
-    EXPECT_EQ(math::bits_of(field_at(tables, blocks.view().block(0), {x, y, z}, kExactEverywhere)),
-              math::bits_of(value));
+    EXPECT_EQ(math::to_bits(field_at(tables, blocks.view().block(0), {x, y, z}, kExactEverywhere)),
+              math::to_bits(value));
   }
 }
 

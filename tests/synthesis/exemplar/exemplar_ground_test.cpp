@@ -22,7 +22,7 @@ TEST(LayeredGround, FindsTheSlopeOfAPlane) {
   const BodyTables none{};
   const BodyGround body{none, {}, {}};
   const ExemplarGround ground{body, below, 10.0};
-  const Vec3f inward = inward_of_layered(ground, {0.1f, 0.2f, 0.0f}, {0.0f, 0.0f, -2.0f}, 0.5f);
+  const Vec3f inward = layered_inward(ground, {0.1f, 0.2f, 0.0f}, {0.0f, 0.0f, -2.0f}, 0.5f);
   EXPECT_NEAR(inward.x, slope.x, 1e-5f);
   EXPECT_NEAR(inward.y, slope.y, 1e-5f);
   EXPECT_NEAR(inward.z, -1.0f, 1e-5f);

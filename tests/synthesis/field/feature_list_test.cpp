@@ -57,7 +57,7 @@ TEST(FeatureList, PlacesLieOnTheFinishedSurface) {
 TEST(FeatureList, WhatTheMeshDoesNotShowIsNotResolved) {
   const Recipe recipe = cratered_ball();
   const ImplicitField field(recipe);
-  const std::vector<Feature> both = features_of(field, {});
+  const std::vector<Feature> both = list_features(field, {});
   EXPECT_TRUE(is_resolved(both[0], 2.0));
   EXPECT_FALSE(is_resolved(both[0], 2.01)) << "fewer than two cells across";
   EXPECT_TRUE(is_resolved(both[1], 0.75));

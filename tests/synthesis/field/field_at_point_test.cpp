@@ -48,14 +48,14 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
       float four[4];
       field_at_tetrahedron(tables, blocks.view().block(1), p, four);
       for (std::size_t k = 0; k < 4; ++k) {
-        ASSERT_EQ(math::bits_of(four[k]), math::bits_of(corners[i + k])) << seed;
+        ASSERT_EQ(math::to_bits(four[k]), math::to_bits(corners[i + k])) << seed;
       }
     }
     for (const float band : {kExactEverywhere, 0.02f, 0.0f}) {
       block.evaluate(x, y, z, value, band);
       for (std::size_t i = 0; i < x.size(); ++i) {
         const float one = field_at(tables, blocks.view().block(1), {x[i], y[i], z[i]}, band);
-        ASSERT_EQ(math::bits_of(one), math::bits_of(value[i])) << seed << " " << one << " " << value[i];
+        ASSERT_EQ(math::to_bits(one), math::to_bits(value[i])) << seed << " " << one << " " << value[i];
       }
     }
   }
@@ -96,14 +96,14 @@ void expect_same_bits_in_patch(const Recipe& recipe, std::uint64_t seed, double 
     float four[4];
     field_at_tetrahedron<Frame::kPatch>(tables, blocks.view().block(0), p, four);
     for (std::size_t k = 0; k < 4; ++k) {
-      ASSERT_EQ(math::bits_of(four[k]), math::bits_of(value[i + k])) << seed;
+      ASSERT_EQ(math::to_bits(four[k]), math::to_bits(value[i + k])) << seed;
     }
   }
   for (const float band : {kExactEverywhere, 0.02f, 0.0f}) {
     block.evaluate_local(center, x, y, z, value, band);
     for (std::size_t i = 0; i < x.size(); ++i) {
       const float one = field_at<Frame::kPatch>(tables, blocks.view().block(0), point(i), band);
-      ASSERT_EQ(math::bits_of(one), math::bits_of(value[i])) << seed << " " << one << " " << value[i];
+      ASSERT_EQ(math::to_bits(one), math::to_bits(value[i])) << seed << " " << one << " " << value[i];
     }
   }
 }

@@ -10,9 +10,9 @@ static_assert(!std::is_default_constructible_v<NoiseTraits>);
 
 TEST(LayerNoiseFacts, CratersHaveNoHeights) {
   const LayerNoise craters(CraterRelief{});
-  EXPECT_FALSE(traits_of(craters).has_heights);
-  EXPECT_EQ(height_bound_of(craters), 0.0);
-  EXPECT_EQ(detail_of(craters).left_out, 0.0);
+  EXPECT_FALSE(noise_traits(craters).has_heights);
+  EXPECT_EQ(noise_height_bound(craters), 0.0);
+  EXPECT_EQ(noise_detail(craters).left_out, 0.0);
   EXPECT_EQ(num_impulse_lists(craters), 0u);
 }
 

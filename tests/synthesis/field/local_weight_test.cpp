@@ -93,8 +93,8 @@ TEST(LocalWeight, BitsDependOnThePointAlone) {
     const Vec3f p{points.x[i], points.y[i], points.z[i]};
     FloatPoints alone;
     alone.add({p.x, p.y, p.z});
-    ASSERT_EQ(math::bits_of(weights(weight, alone)[0]), math::bits_of(together[i]));
-    ASSERT_EQ(math::bits_of(weight_of(weight, p)), math::bits_of(together[i]));
+    ASSERT_EQ(math::to_bits(weights(weight, alone)[0]), math::to_bits(together[i]));
+    ASSERT_EQ(math::to_bits(weight_of(weight, p)), math::to_bits(together[i]));
   }
 }
 
@@ -110,7 +110,7 @@ TEST(LocalWeight, ManySpheresAreTheNearestOnes) {
     const Interval bound = bound_of(weight, box);
     for (std::size_t i = 0; i < together.size(); ++i) {
       const float alone = weight_of(weight, {points.x[i], points.y[i], points.z[i]});
-      ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
+      ASSERT_EQ(math::to_bits(alone), math::to_bits(together[i]));
       ASSERT_TRUE(together[i] >= bound.low && together[i] <= bound.high);
     }
   }

@@ -25,9 +25,9 @@ TriangleMesh mesh_of(const Recipe& recipe) {
   return collector.mesh;
 }
 
-std::vector<VertexColor> colors_of(const Recipe& recipe, const TriangleMesh& mesh) {
+std::vector<VertexColor> evaluate_colors(const Recipe& recipe, const TriangleMesh& mesh) {
   const ImplicitField field(recipe);
-  return SurfaceColors(recipe, "r", field).colors_of({}, mesh);
+  return SurfaceColors(recipe, "r", field).evaluate_colors({}, mesh);
 }
 
 // F at the vertices of a mesh.
@@ -47,7 +47,7 @@ TEST(SurfaceColors, ColoursFitTheHeights) {
   const TriangleMesh mesh = mesh_of(recipe);
   const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
                            without = values_at(ImplicitField(bare), mesh);
-  const std::vector<VertexColor> colors = colors_of(recipe, mesh);
+  const std::vector<VertexColor> colors = evaluate_colors(recipe, mesh);
   const double mean = exemplar_colors(layer, "r").mean.x;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const double height = (static_cast<double>(with[i]) - static_cast<double>(without[i])) / 0.01;
@@ -66,7 +66,7 @@ TEST(SurfaceColors, AMaskAndTheOrderOfLayersSayWhoPaints) {
   const TriangleMesh mesh = mesh_of(recipe);
   const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
                            without = values_at(ImplicitField(sphere_recipe(1.0)), mesh);
-  const std::vector<VertexColor> colors = colors_of(recipe, mesh);
+  const std::vector<VertexColor> colors = evaluate_colors(recipe, mesh);
   std::size_t bare = 0;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const double hill = static_cast<double>(with[i]) - static_cast<double>(without[i]);
@@ -82,7 +82,7 @@ TEST(SurfaceColors, AMaskAndTheOrderOfLayersSayWhoPaints) {
   both.layers.push_back(later);
   last.layers[1] = BoulderLayer{};
   last.layers.push_back(later);
-  EXPECT_EQ(colors_of(both, mesh), colors_of(last, mesh));
+  EXPECT_EQ(evaluate_colors(both, mesh), evaluate_colors(last, mesh));
 }
 
 // A layer that only paints moves nothing, not even one that replaces elevations. This holds for many points
@@ -114,7 +114,7 @@ TEST(SurfaceColors, HaveTheSameBytesForOneThreadAndForManyAndInPortions) {
   const TriangleMesh mesh = mesh_of(recipe);
   const auto painted = [&](int threads) {
     const ThreadLimit limit(threads);
-    return colors_of(recipe, mesh);
+    return evaluate_colors(recipe, mesh);
   };
   const std::vector<VertexColor> all = painted(1);
   EXPECT_EQ(all, painted(2));
@@ -194,7 +194,7 @@ TEST(SurfaceAlbedo, ColorsAreForViewing) {
   bright.albedo->normal = 0.38;
   const auto green = [](const Recipe& recipe) {
     const ImplicitField field(recipe);
-    return SurfaceColors(recipe, "r", field).colors_of({}, TriangleMesh{{{0, 0, 1}}, {}, {}, {}})[0][1];
+    return SurfaceColors(recipe, "r", field).evaluate_colors({}, TriangleMesh{{{0, 0, 1}}, {}, {}, {}})[0][1];
   };
   EXPECT_EQ(green(dark), 144);    // sRGB of .278
   EXPECT_EQ(green(bright), 198);  // of .562

@@ -63,7 +63,7 @@ TEST(KnownPopulation, LayersHaveTheDensityOfTheirSizes) {
       EXPECT_NEAR(layer.density, 1e-6 * number, 1e-5 * layer.density) << body.name;
       EXPECT_NEAR(1e-6 * in_km.layers[i].density, layer.density, 1e-5 * layer.density);
       // The law between the limits is the body's.
-      const Population& drawn = *population_of(in_m.recipe.layers[static_cast<std::size_t>(layer.layer)]);
+      const Population& drawn = *find_population(in_m.recipe.layers[static_cast<std::size_t>(layer.layer)]);
       const double middle = std::sqrt(layer.least * layer.greatest);
       const double below = known_number(layer.known, layer.least) - known_number(layer.known, middle);
       EXPECT_NEAR(share_below(drawn, middle), below / number, 1e-4) << body.name;

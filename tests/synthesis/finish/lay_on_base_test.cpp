@@ -70,12 +70,12 @@ TEST(LayOnBase, GaborLayersKeepTheirShape) {
 
 TEST(LayOnBase, LengthsOfALayersUseAreConverted) {
   Recipe details = bumps("m", 1.0);
-  LayerUse& use = *use_of(details.layers.front());
+  LayerUse& use = *find_use(details.layers.front());
   use.locality = Locality{"head", 3.0};
   use.mask = LayerMask{"hills", 1.0, 2.0};
   use.combination.width = 4.0;
   const Recipe result = lay_on_base(details, "bumps", ball("km", 1.0), "ball");
-  const LayerUse& converted = *use_of(result.layers.front());
+  const LayerUse& converted = *find_use(result.layers.front());
   EXPECT_DOUBLE_EQ(converted.locality->width, 3e-3);
   EXPECT_DOUBLE_EQ(converted.mask->from, 1e-3);
   EXPECT_DOUBLE_EQ(converted.mask->to, 2e-3);
@@ -132,7 +132,7 @@ Recipe measured_ball(double radius, double edge) {
 TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
   const Recipe details = measured_ball(2.0, 0.05), base = measured_ball(10.0, 0.1);
   const auto edge_by = [&](const char* lengths) {
-    const Recipe laid = lay_on_base(details, "details", base, "base", base_lengths_of(lengths));
+    const Recipe laid = lay_on_base(details, "details", base, "base", parse_base_lengths(lengths));
     EXPECT_EQ(laid.layers.size(), 1u);  // the base's own relief is gone
     const auto& relief = std::get<ReliefLayer>(laid.layers.back());
     EXPECT_FALSE(ImplicitField(laid).bounds().empty());  // its places are found again
@@ -143,7 +143,7 @@ TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
   EXPECT_DOUBLE_EQ(edge_by("edges"), 1.0);
   const auto refused = [&](const Recipe& layers, const char* lengths) {
     return testing::refusal_of(
-        [&] { lay_on_base(layers, "details", ball("m", 1.0), "base", base_lengths_of(lengths)); });
+        [&] { lay_on_base(layers, "details", ball("m", 1.0), "base", parse_base_lengths(lengths)); });
   };
   EXPECT_TRUE(testing::has(refused(details, "edges"), "base: layers: hold no relief"));
   EXPECT_TRUE(testing::has(refused(bumps("m", 1.0), "body"), "details: body: absent"));

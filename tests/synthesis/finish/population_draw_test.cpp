@@ -29,7 +29,7 @@ Frame frame_of(const TriangleMesh& mesh) {
 }
 
 MeasuredBody measured(const std::string& name, BodyClass kind, double diameter, const Recipe& recipe) {
-  const TriangleMesh mesh = coarse_mesh_of(ImplicitField(recipe), 48);
+  const TriangleMesh mesh = make_coarse_mesh(ImplicitField(recipe), 48);
   const Frame frame = frame_of(mesh);
   MeasuredBody body;
   body.name = name;
@@ -62,7 +62,7 @@ const Recipe& shared_population() {
   return recipe;
 }
 
-TriangleMesh mesh_of(const Recipe& recipe) { return coarse_mesh_of(ImplicitField(recipe), 64); }
+TriangleMesh mesh_of(const Recipe& recipe) { return make_coarse_mesh(ImplicitField(recipe), 64); }
 
 TEST(PopulationDraw, IsAFunctionOfTheSeed) {
   Recipe recipe = shared_population();

@@ -60,7 +60,7 @@ Counts predicted_over_true(const Recipe& recipe, int count) {
   const ImplicitField field(recipe);
   MeshDiscard sink;
   const MeshStatistics made = mesh_field(field, field.bounds(), kCells, sink);
-  const ProbedSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
+  const ProbedSurface surface(make_coarse_mesh(field, kCoarse), kEverywhere);
   const double reach = make_sample_grid(field.bounds(), kCoarse).step;
   const ProbeFigures figures = probe_surface<kBlockCells>(field, {surface, made.step, reach}, count);
   EXPECT_GT(figures.seconds, 0.0);

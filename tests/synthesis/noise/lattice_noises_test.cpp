@@ -62,7 +62,7 @@ TEST(LatticeNoise, NeighboursHashesAreIndependent) {
 
 TEST(LatticeNoise, GradientsAreTheTwelveEdgesOfACube) {
   for (std::uint32_t g = 0; g < 16; ++g) {
-    const Vec3f v = gradient_of(g << 28);
+    const Vec3f v = lattice_gradient(g << 28);
     EXPECT_EQ(dot(v, v), 2.0f);
     EXPECT_EQ(std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z), 2.0f);
     EXPECT_EQ(gradient_product(g << 28, 0.5f, -3.0f, 8.0f), 0.5f * v.x - 3.0f * v.y + 8.0f * v.z);
@@ -182,7 +182,7 @@ TEST(FractalNoise, OneOctaveOfSimplexNoiseKeepsItsBits) {
   const LoneNoise<FractalNoise> noise(testing::fractal_layer(0.5, 1.0, 1), 1, 0, kFractalDomain);
   const Heights h(noise, kFractalDomain, 4096, 1);
   std::uint32_t checksum = 0;
-  for (const float v : h.height) checksum = checksum * 31u + static_cast<std::uint32_t>(math::bits_of(v));
+  for (const float v : h.height) checksum = checksum * 31u + static_cast<std::uint32_t>(math::to_bits(v));
   EXPECT_EQ(checksum, 2811787874u);
 }
 

@@ -152,7 +152,7 @@ TEST(Preview, LambertAndLommelSeeligerFollowTheirFormulas) {
   options.vertex_colors.assign(sphere_mesh().vertices.size(), {0.5f, 0.5f, 0.5f});
   const auto middle = [&](const char* law) {
     options.reflectance = parse_reflectance("law", law);
-    return linear_of_srgb(render_picture(sphere_mesh(), options).image.pixels[4 * (64 * 32 + 32)] / 65535.0);
+    return srgb_to_linear(render_picture(sphere_mesh(), options).image.pixels[4 * (64 * 32 + 32)] / 65535.0);
   };
   EXPECT_NEAR(middle("lambert"), 0.5 * 0.5, 0.01);
   EXPECT_NEAR(middle("lommel-seeliger"), 0.5 * 2 * 0.5 / 1.5, 0.01);
@@ -199,10 +199,10 @@ TriangleMesh diamond() {
 }
 
 TEST(PictureMarks, TitlesHaveQuantityAndUnit) {
-  EXPECT_EQ(title_of_column("slope_deg"), "slope [deg]");
-  EXPECT_EQ(title_of_column("effective_gravity_m_s2"), "effective gravity [m/s2]");
-  EXPECT_EQ(title_of_column("geopotential_J_kg"), "geopotential [J/kg]");
-  EXPECT_EQ(title_of_column("crater_age"), "crater age");
+  EXPECT_EQ(column_title("slope_deg"), "slope [deg]");
+  EXPECT_EQ(column_title("effective_gravity_m_s2"), "effective gravity [m/s2]");
+  EXPECT_EQ(column_title("geopotential_J_kg"), "geopotential [J/kg]");
+  EXPECT_EQ(column_title("crater_age"), "crater age");
 }
 
 TEST(PictureMarks, RangesAreThePercentilesOfFiniteValues) {

@@ -94,8 +94,8 @@ TEST(ReliefLevels, HaveTheBitsOfOnePointInABatch) {
   evaluate_heights(continued.noise, continued.arrays(), static_cast<int>(x.size()), x.data(), y.data(),
                    z.data(), heights.data());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    ASSERT_EQ(math::bits_of(heights[i]),
-              math::bits_of(height_at(continued.noise, continued.arrays(), {x[i], y[i], z[i]})))
+    ASSERT_EQ(math::to_bits(heights[i]),
+              math::to_bits(height_at(continued.noise, continued.arrays(), {x[i], y[i], z[i]})))
         << i;
   }
 }

@@ -90,7 +90,7 @@ TEST(ReliefNoise, HasTheBitsOfOnePointInABatch) {
                    heights.data());
   int others = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    ASSERT_EQ(math::bits_of(heights[i]), math::bits_of(height_at(potato.noise, arrays, {x[i], y[i], z[i]})))
+    ASSERT_EQ(math::to_bits(heights[i]), math::to_bits(height_at(potato.noise, arrays, {x[i], y[i], z[i]})))
         << i;
     others += heights[i] != 0.0f;
   }
@@ -168,7 +168,7 @@ TEST(ReliefNoise, MakesTheSameClosedMeshForAnyThreadCount) {
   std::vector<Vec3f> vertices[2];
   for (const int threads : {1, 3}) {
     const ThreadLimit limit(threads);
-    const TriangleMesh mesh = coarse_mesh_of(ImplicitField(recipe), 64);
+    const TriangleMesh mesh = make_coarse_mesh(ImplicitField(recipe), 64);
     const MeshTopology topology = analyze_topology(mesh);
     EXPECT_TRUE(topology.closed && topology.manifold);
     for (const Vec3d& p : mesh.vertices) vertices[threads / 3].push_back(to_float(p));

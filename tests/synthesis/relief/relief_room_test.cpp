@@ -74,7 +74,7 @@ TEST(ReliefValues, StayNearTheValuesOfAThinBody) {
   std::vector<double> values;
   for (std::size_t i = 0; i < plate.places.size(); ++i)
     values.push_back(std::sin(17.0 * plate.points.at(i).x) * std::sin(40.0 * plate.points.at(i).z));
-  for (const double c : blend.coefficients_of(values)) EXPECT_LE(std::fabs(c), 3.0);
+  for (const double c : blend.solve(values)) EXPECT_LE(std::fabs(c), 3.0);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST_F(FitGabor, WritesARecipeOfOneLayer) {
   ASSERT_EQ(recipe().layers.size(), 1u);
   EXPECT_FALSE(std::get<GaborLayer>(recipe().layers[0]).lobes.empty());
   EXPECT_EQ(recipe().provenance.input_name, "rock.png");
-  EXPECT_EQ(recipe().provenance.input_sha256, sha256_of_file(folder_ / "rock.png"));
+  EXPECT_EQ(recipe().provenance.input_sha256, file_sha256(folder_ / "rock.png"));
 }
 
 // Sixteen tiles are fitted as one, and so is a strip of them.
@@ -81,7 +81,7 @@ TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
   ASSERT_EQ(recipe().layers.size(), 1u);
   const ExemplarLayer layer = std::get<ExemplarLayer>(recipe().layers[0]);
   EXPECT_EQ(layer.image, "rock_exemplar.png");
-  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
+  EXPECT_EQ(layer.image_sha256, file_sha256(folder_ / "rock_exemplar.png"));
   EXPECT_EQ(layer.height_rms, 0.5);
   EXPECT_EQ(recipe().provenance.input_name, "rock.png");
   EXPECT_EQ(fit("rock.json", line + "2").size(), one.size());
@@ -92,7 +92,7 @@ TEST_F(FitGabor, WritesRandomPhasesAsAnExemplar) {
   fit("rock.json", "--model phase --channels pca --report report --summary s.json");
   const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
   EXPECT_TRUE(layer.color);
-  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
+  EXPECT_EQ(layer.image_sha256, file_sha256(folder_ / "rock_exemplar.png"));
   const auto summary = json("s.json");
   EXPECT_EQ(summary["model"], "phase");
   EXPECT_NEAR(summary["variance_ratio_synthesized"], 1.0, 0.3);

@@ -119,7 +119,7 @@ TEST(BodyClasses, FollowFromTheShape) {
     recipe.body->spheres = std::move(spheres);
     recipe.body->a = recipe.body->b = 2.0;
     recipe.body->blend_exponent = exponent;
-    const TriangleMesh mesh = coarse_mesh_of(ImplicitField(recipe), 64);
+    const TriangleMesh mesh = make_coarse_mesh(ImplicitField(recipe), 64);
     return class_of(shape_features(mesh, body_frame(mesh)));
   };
   EXPECT_EQ(class_of_spheres({{{0, 0, 0}, 1}, {{1.7, 0, 0}, 0.8}}, 4.0), BodyClass::kContactBinary);

@@ -63,7 +63,7 @@ TEST_F(FitShape, WritesARecipeWithABody) {
   EXPECT_LE(egg.body->spheres.size(), 12u);
   EXPECT_TRUE(egg.body->subtract.empty());
   EXPECT_EQ(egg.provenance.input_name, "egg.obj");
-  EXPECT_EQ(egg.provenance.input_sha256, sha256_of_file(folder_ / "egg.obj"));
+  EXPECT_EQ(egg.provenance.input_sha256, file_sha256(folder_ / "egg.obj"));
   const auto summary = json("s.json");
   for (const char* field : {"spheres", "similarity", "evaluations", "seconds"}) {
     EXPECT_TRUE(summary.at(field).is_number()) << field;
@@ -240,7 +240,7 @@ TEST_F(FitShape, LayersThatAFittedBodyCannotHaveAreRefusedBeforeAnyWork) {
   waves.amplitude = 0.1;
   rock.layers = {waves, gravel_layer()};
   Recipe grouped = rock;
-  use_of(grouped.layers[1])->locality = {"head", 0.5};
+  find_use(grouped.layers[1])->locality = {"head", 0.5};
   put(grouped, "grouped.json");
   for (const std::string option : {"--micro", "--details"}) {
     refuse("none.obj -o no.json " + option + " grouped.json",
@@ -248,7 +248,7 @@ TEST_F(FitShape, LayersThatAFittedBodyCannotHaveAreRefusedBeforeAnyWork) {
                ": grouped.json: layers[1].locality.group: a fitted body has no groups; take `locality` "
                "out of the layer");
   }
-  use_of(rock.layers[1])->mask = {"waves", 0.0, 0.1};
+  find_use(rock.layers[1])->mask = {"waves", 0.0, 0.1};
   put(rock, "masked.json");
   refuse("none.obj -o no.json --micro masked.json",
          "layers[1].mask.layer: names a layer that is no Gabor layer");

@@ -21,7 +21,8 @@ struct Bridged {
   ShapeFitOptions options;
   ShapeFitResult fit;
 
-  Bridged() : recipe(pair()), target(prepare_target(coarse_mesh_of(ImplicitField(recipe), kCells), "pair")) {
+  Bridged()
+      : recipe(pair()), target(prepare_target(make_coarse_mesh(ImplicitField(recipe), kCells), "pair")) {
     recipe.layers = {testing::relief_layer(recipe, 0.1, 0.0, 0.4,
                                            [](const Vec3d& p) { return std::fabs(p.x) < 0.5 ? 0.3 : 0.0; })};
     options.check_resolution = kCells;

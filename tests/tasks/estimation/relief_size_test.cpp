@@ -31,7 +31,7 @@ struct BumpyTarget {
   TriangleMesh bumpy_mesh() const {
     Recipe bumpy = bare;
     bumpy.layers = {testing::fractal_layer(0.02, 4.0, 2)};
-    return coarse_mesh_of(ImplicitField(bumpy), 60);
+    return make_coarse_mesh(ImplicitField(bumpy), 60);
   }
 };
 

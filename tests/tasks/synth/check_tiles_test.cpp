@@ -58,7 +58,7 @@ class CheckTiles : public SynthTest {
     ordered_json& tile = document["tile"];
     tile.erase("checksum");
     change(tile);
-    tile["checksum"] = sha256_of(tile.dump());
+    tile["checksum"] = sha256(tile.dump());
     write(summary(number), document.dump());
   }
 };
@@ -190,7 +190,7 @@ TEST_F(CheckTiles, AVertexOfABorderThatMovedByOneStepIsSeen) {
     move_a_vertex(folder_ / mesh_name(3), z, axis);
     expect_failure(check_with_meshes(), "its bytes have another SHA-256");
     EXPECT_EQ(check(summaries()).status, 0) << "certificates alone cannot know";
-    forge(3, [&](ordered_json& tile) { tile["file_sha256"] = sha256_of_file(folder_ / mesh_name(3)); });
+    forge(3, [&](ordered_json& tile) { tile["file_sha256"] = file_sha256(folder_ / mesh_name(3)); });
     expect_failure(check_with_meshes(), words[axis]);
   }
 }
@@ -198,7 +198,7 @@ TEST_F(CheckTiles, AVertexOfABorderThatMovedByOneStepIsSeen) {
 TEST_F(CheckTiles, DamagedMeshesAreNamed) {
   make_tiles();
   const auto expect = [&](const std::string& words) {
-    forge(2, [&](ordered_json& tile) { tile["file_sha256"] = sha256_of_file(folder_ / mesh_name(2)); });
+    forge(2, [&](ordered_json& tile) { tile["file_sha256"] = file_sha256(folder_ / mesh_name(2)); });
     const Outcome outcome = check_with_meshes();
     EXPECT_NE(outcome.status, 0);
     EXPECT_TRUE(has(outcome.errors, words));

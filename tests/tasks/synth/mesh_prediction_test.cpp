@@ -13,7 +13,7 @@ constexpr int kThreads = 1;
 const std::filesystem::path kRecipeFile = "recipe.json";
 
 MeshPart part_of(const MeshSpec& spec, const Recipe& recipe) {
-  return part_of_body(spec, recipe, kRecipeFile, false, {}, {});
+  return make_body_part(spec, recipe, kRecipeFile, false, {}, {});
 }
 
 MeshPrediction predicted(const Recipe& recipe, MeshSpec spec, const std::string& file = "mesh.ply") {

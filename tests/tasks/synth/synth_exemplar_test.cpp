@@ -43,7 +43,7 @@ class SynthExemplar : public SynthTest {
                                      : R"({"format_version": 1, "length_unit": "m", )" + layers + "}");
   }
   std::string recipe_of(const std::string& image, bool with_body = true) {
-    return recipe_with_hash(image, sha256_of_file(folder_ / image), with_body);
+    return recipe_with_hash(image, file_sha256(folder_ / image), with_body);
   }
   std::string make_mesh(const std::string& recipe, const std::string& mesh,
                         const std::string& threads = "2") {

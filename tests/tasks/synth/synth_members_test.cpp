@@ -83,7 +83,7 @@ TEST_F(SynthMembers, EachHasFilesAndALine) {
     EXPECT_EQ(entry["files"].size(), 3u);
     for (const Json& file : entry["files"]) {
       const std::string path = "set/" + file["name"].get<std::string>();
-      EXPECT_EQ(sha256_of_file(folder_ / path), file["sha256"]);
+      EXPECT_EQ(file_sha256(folder_ / path), file["sha256"]);
       EXPECT_EQ(text(path).size(), file["bytes"]);
     }
     EXPECT_GE(entry["drawn"]["layers[0].amplitude"], 1.0);
@@ -93,7 +93,7 @@ TEST_F(SynthMembers, EachHasFilesAndALine) {
   EXPECT_NE(entries.at(3)["files"][0]["sha256"], entries.at(4)["files"][0]["sha256"]);
   // The member's own recipe makes the member's mesh.
   succeed("set/0000004.json -o alone.ply --resolution 20");
-  EXPECT_EQ(sha256_of_file(folder_ / "alone.ply"), entries.at(4)["files"][0]["sha256"]);
+  EXPECT_EQ(file_sha256(folder_ / "alone.ply"), entries.at(4)["files"][0]["sha256"]);
 }
 
 // Threads make members beside each other. The folder of one is a file, so that it fails among the others.

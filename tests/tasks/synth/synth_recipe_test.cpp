@@ -54,7 +54,7 @@ TEST_F(SynthVariation, VariationsCanBeLikeATargetInstead) {
   succeed("r.json -o target.ply --resolution 128");
   for (const bool fitted : {false, true}) {
     const std::string origin = R"("provenance": {"input_name": "rock.ply", "input_sha256": ")" +
-                               (fitted ? sha256_of_file(folder_ / "target.ply") : std::string(64, '0')) +
+                               (fitted ? file_sha256(folder_ / "target.ply") : std::string(64, '0')) +
                                "\"}, \"body\"";
     write("fit.json", replaced(kTwoSpheres, "\"body\"", origin));
     const std::string said =

@@ -121,7 +121,7 @@ TEST_F(Synth, SummaryHoldsTheFigures) {
   EXPECT_EQ(summary["closed"], true);
   EXPECT_EQ(summary["manifold"], true);
   EXPECT_EQ(summary["genus"], topology.genus);
-  EXPECT_EQ(summary["sha256"], sha256_of_file(folder_ / "out.ply"));
+  EXPECT_EQ(summary["sha256"], file_sha256(folder_ / "out.ply"));
 }
 
 // The whole mesh's file without its faces, but for the header.

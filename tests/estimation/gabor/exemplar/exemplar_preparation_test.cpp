@@ -72,7 +72,8 @@ TEST(ExemplarPreparation, KeepsTheColoursOfAPhoto) {
     kept += image.rgb[3 * i + 2] / 65535.0 / static_cast<double>(image.values.size());
   }
   EXPECT_NEAR(kept, photo, 1e-3);
-  const PreparedExemplar grey = prepare_exemplar(luma_of(std::vector<GreyImage>{red, green, blue}), "p", 1);
+  const PreparedExemplar grey =
+      prepare_exemplar(luma_image(std::vector<GreyImage>{red, green, blue}), "p", 1);
   EXPECT_NEAR(grey.layer.height_rms / prepared.layer.height_rms, 1.0, 1e-3);
   blue.values[5] = 300.0;
   EXPECT_THROW(prepare_exemplar(std::vector<GreyImage>{red, green, blue}, "p", 1), InputError);

@@ -34,9 +34,9 @@ TEST(PhaseExemplar, TakesTheSpectrumOfThePhoto) {
   const ExemplarLayer layer = phase_exemplar({cut.image}, "photo", 1);
   EXPECT_EQ(layer.pixels->width, 512);
   EXPECT_EQ(layer.pixels->height, 512);
-  EXPECT_NEAR(layer.height_rms / std::sqrt(variance_of(cut.image.values)), 1.0, 0.02);
+  EXPECT_NEAR(layer.height_rms / std::sqrt(sample_variance(cut.image.values)), 1.0, 0.02);
   const GreyImage texture = exemplar_texture_like(layer, cut.image, 5);
-  EXPECT_NEAR(variance_of(texture.values) / variance_of(cut.image.values), 1.0, 0.25);
+  EXPECT_NEAR(sample_variance(texture.values) / sample_variance(cut.image.values), 1.0, 0.25);
   EXPECT_LT(texture_score(texture, cut.image).sum(), 0.2);
   const ExemplarLayer periodic =
       phase_exemplar({testing::realisation_of(testing::ring_spectrum(), 2)}, "periodic", 1);
@@ -63,8 +63,8 @@ TEST(PhaseExemplar, PaintsTheColoursOfItsPrincipalAxes) {
     red.push_back(layer.pixels->rgb[i] / 65535.0);
     blue.push_back(layer.pixels->rgb[i + 2] / 65535.0);
   }
-  EXPECT_NEAR(std::sqrt(variance_of(red)), std::sqrt(variance_of(planes[0].values)), 0.004);
-  EXPECT_NEAR(std::sqrt(variance_of(blue)), std::sqrt(variance_of(planes[2].values)), 0.002);
+  EXPECT_NEAR(std::sqrt(sample_variance(red)), std::sqrt(sample_variance(planes[0].values)), 0.004);
+  EXPECT_NEAR(std::sqrt(sample_variance(blue)), std::sqrt(sample_variance(planes[2].values)), 0.002);
 }
 
 TEST(PhaseExemplar, MovesItsProgressAndStops) {

@@ -65,7 +65,7 @@ TEST(BorderTaper, LeavesAPeriodAsItIs) {
 TEST(BorderTaper, FadesACut) {
   const GreyImage cut = testing::realisation_of(testing::steep_spectrum(), 3).part(0, 0, 70, 70);
   const BorderTaper taper = taper_of(cut);
-  EXPECT_LT(std::abs(faded(cut, taper).at(0, 35)), 0.1 * std::sqrt(variance_of(cut.values)));
+  EXPECT_LT(std::abs(faded(cut, taper).at(0, 35)), 0.1 * std::sqrt(sample_variance(cut.values)));
   EXPECT_GT(taper.looks(), 0.7);
   EXPECT_LT(taper.looks(), 1.0);
 }
@@ -183,7 +183,7 @@ TEST(TaperedPeriodogram, DoesNotLeak) {
 TEST(TaperedPeriodogram, LeavesARampOut) {
   GreyImage image = testing::unscaled_cut(testing::ring_power, 3).image;
   const PowerSpectrum bare = spectrum_of_square(image);
-  const double variance = variance_of(image.values);
+  const double variance = sample_variance(image.values);
   EXPECT_NEAR(bare.variance(), variance, 0.05 * variance);
   const double slope = std::sqrt(10.0 * variance * 12.0) / 128.0;
   for (std::size_t i = 0; i < image.values.size(); ++i)

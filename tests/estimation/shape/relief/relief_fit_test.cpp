@@ -22,12 +22,12 @@ struct Bumpy {
   explicit Bumpy(double amplitude = 0.02, int cells = 60) {
     Recipe bumpy = base;
     bumpy.layers = {fractal_layer(amplitude, 4.0, 2)};
-    surface = coarse_mesh_of(ImplicitField(bumpy), cells);
+    surface = make_coarse_mesh(ImplicitField(bumpy), cells);
   }
 };
 
 double mean_distance(const TriangleMesh& from, const Recipe& to) {
-  const TriangleMesh mesh = coarse_mesh_of(ImplicitField(to), 120);
+  const TriangleMesh mesh = make_coarse_mesh(ImplicitField(to), 120);
   const SurfaceTree tree(mesh);
   double sum = 0.0;
   for (const Vec3d& p : from.vertices) sum += std::fabs(tree.signed_distance(p));
@@ -57,14 +57,14 @@ Recipe lobes_in_contact() {
 // Where few samples see a place, heights would be several times what was measured.
 TEST(ReliefFit, HasNoHeightFarBeyondWhatWasMeasured) {
   Recipe bumpy = lobes_in_contact();
-  const TriangleMesh bare = coarse_mesh_of(ImplicitField(bumpy), 60);
+  const TriangleMesh bare = make_coarse_mesh(ImplicitField(bumpy), 60);
   bumpy.layers = {fractal_layer(0.02, 4.0, 2)};
-  const ReliefFit relief = fit_relief(coarse_mesh_of(ImplicitField(bumpy), 60), lobes_in_contact());
+  const ReliefFit relief = fit_relief(make_coarse_mesh(ImplicitField(bumpy), 60), lobes_in_contact());
   EXPECT_GT(relief.layer.low, -0.06);
   EXPECT_LT(relief.layer.high, 0.06);
   bumpy.layers = {relief.layer};
   const MeshTopology wanted = analyze_topology(bare),
-                     made = analyze_topology(coarse_mesh_of(ImplicitField(bumpy), 120));
+                     made = analyze_topology(make_coarse_mesh(ImplicitField(bumpy), 120));
   EXPECT_EQ(made.components, wanted.components);
   EXPECT_EQ(made.genus, wanted.genus);
 }
