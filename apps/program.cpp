@@ -84,7 +84,7 @@ void heed(int signal_number) {
 }
 
 // Dies of the signal that stopped the work, so that whoever started the program knows: a shell's loop ends.
-[[noreturn]] void die_of_signal() {
+[[noreturn]] void end_by_signal() {
   std::fflush(nullptr);
   std::signal(g_signal, SIG_DFL);
   std::raise(g_signal);
@@ -185,7 +185,7 @@ void declare(OptionRow& row, CLI::App& parser) {
 
 // The words of a command line, the last first, as CLI11 takes them. An option that stands without a value
 // gets the one that it means.
-std::vector<std::string> words_of(const OptionTable& options, int argc, char** argv) {
+std::vector<std::string> option_words(const OptionTable& options, int argc, char** argv) {
   std::vector<std::string> words;
   for (int i = argc - 1; i > 0; --i) {
     std::string word = argv[i];
@@ -236,7 +236,7 @@ std::optional<int> Program::parse(int argc, char** argv) {
     return 2;
   };
   try {
-    std::vector<std::string> words = words_of(options, argc, argv);
+    std::vector<std::string> words = option_words(options, argc, argv);
     parser.parse(words);
     options.check_combination();
   } catch (const CLI::ParseError& e) {
@@ -251,7 +251,7 @@ std::optional<int> Program::parse(int argc, char** argv) {
 
 int Program::run(int argc, char** argv, const std::function<void()>& work) {
   const auto ended = [](int status) {
-    if (interrupted()) die_of_signal();
+    if (interrupted()) end_by_signal();
     return status;
   };
   try {

@@ -92,7 +92,7 @@ inline constexpr std::size_t kFullLaunch = std::size_t{1} << 20;
 inline constexpr std::uint32_t kMostShares = 32;
 
 // The number of threads for each of some lists: more than one where the lists alone leave a GPU idle.
-inline std::uint32_t shares_of(std::size_t lists) {
+inline std::uint32_t share_count(std::size_t lists) {
   const std::size_t wanted = kFullLaunch / std::max<std::size_t>(lists, 1);
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(wanted, 1, kMostShares));
 }

@@ -28,18 +28,18 @@ struct ProbeLines {
 // The layers of the candidates as tables. The layers of a candidate add their heights.
 struct Candidates {
   ArrayStore arrays;
-  std::vector<FractalNoise> noises;     // layers of all candidates
-  std::vector<ListRange> of_candidate;  // layers of each candidate in `noises`
+  std::vector<FractalNoise> noises;         // layers of all candidates
+  std::vector<ListRange> candidate_ranges;  // layers of each candidate in `noises`
 
   // Adds a candidate. `seed` is the recipe's. Layers are numbered from 0. The surface must lie in `domain`.
   void add(std::span<const FractalLayer> layers, std::uint64_t seed, const Box& domain) {
-    of_candidate.push_back(
+    candidate_ranges.push_back(
         {static_cast<std::uint32_t>(noises.size()), static_cast<std::uint32_t>(layers.size())});
     for (std::size_t i = 0; i < layers.size(); ++i) {
       noises.push_back(make_noise(layers[i], seed, static_cast<int>(i), domain, arrays));
     }
   }
-  std::size_t size() const { return of_candidate.size(); }
+  std::size_t size() const { return candidate_ranges.size(); }
 };
 
 class CandidateEvaluator {
@@ -56,7 +56,7 @@ struct ProbeLine {
   ArrayView arrays;
   BodyTables body;             // a plain body of one leaf
   const FractalNoise* noises;  // layers of all candidates
-  const ListRange* of_candidate;
+  const ListRange* candidate_ranges;
   LeafLists metaballs;  // one list for each block
   const Vec3f *start, *direction;
   const std::uint32_t* block;
@@ -66,14 +66,14 @@ struct ProbeLine {
   float* heights;  // (candidates, lines)
 
   ASTROLITH_HD void operator()(std::size_t i) const {
-    const ListRange own = of_candidate[i / lines];
+    const ListRange own = candidate_ranges[i / lines];
     const std::size_t line = i % lines;
-    const LeafLists of_block{metaballs.spheres, metaballs.first + block[line]};
+    const LeafLists block_lists{metaballs.spheres, metaballs.first + block[line]};
     const Vec3f from = start[line], along = direction[line];
     float t = 0.0f;
     for (int step = 0; step < steps; ++step) {
       const Vec3f p{from.x + t * along.x, from.y + t * along.y, from.z + t * along.z};
-      float f = body_at(body, arrays, of_block, p).distance;
+      float f = body_at(body, arrays, block_lists, p).distance;
       for (std::uint32_t k = own.first; k < own.first + own.count; ++k) f += height_at(noises[k], arrays, p);
       t = std::clamp(t + f, -reach, reach);
     }
@@ -94,7 +94,7 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
     const ArrayView view = store.view();
     const auto arrays = backend_.upload(std::span(view.bytes, view.size));
     const auto noises = backend_.upload(std::span<const FractalNoise>(candidates.noises));
-    const auto of_candidate = backend_.upload(std::span<const ListRange>(candidates.of_candidate));
+    const auto candidate_ranges = backend_.upload(std::span<const ListRange>(candidates.candidate_ranges));
     const auto metaballs = backend_.upload(std::span<const MetaballSphere<float>>(lines.metaballs));
     const auto first_metaball = backend_.upload(std::span<const std::uint32_t>(lines.first_metaball));
     const auto start = backend_.upload(std::span<const Vec3f>(lines.start));
@@ -106,7 +106,7 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
                     ProbeLine{{arrays.data(), view.size},
                               body,
                               noises.data(),
-                              of_candidate.data(),
+                              candidate_ranges.data(),
                               {metaballs.data(), first_metaball.data()},
                               start.data(),
                               direction.data(),

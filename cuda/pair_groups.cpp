@@ -2,15 +2,15 @@
 
 namespace astrolith {
 
-std::vector<PairGroup> pair_groups(std::span<const std::int64_t> first_of_code) {
+std::vector<PairGroup> pair_groups(std::span<const std::int64_t> code_first) {
   std::vector<PairGroup> groups;
-  const std::size_t codes = first_of_code.size() - 1;
+  const std::size_t codes = code_first.size() - 1;
   for (std::size_t l = 0; l < codes; ++l) {
-    for (std::int64_t row = first_of_code[l]; row < first_of_code[l + 1]; row += kGroupRows) {
-      const std::int64_t end_row = std::min<std::int64_t>(row + kGroupRows, first_of_code[l + 1]);
+    for (std::int64_t row = code_first[l]; row < code_first[l + 1]; row += kGroupRows) {
+      const std::int64_t end_row = std::min<std::int64_t>(row + kGroupRows, code_first[l + 1]);
       for (std::size_t other = 0; other <= l; ++other) {
-        const std::int64_t end = std::min(first_of_code[other + 1], end_row - 1);
-        for (std::int64_t column = first_of_code[other]; column < end; column += kGroupColumns) {
+        const std::int64_t end = std::min(code_first[other + 1], end_row - 1);
+        for (std::int64_t column = code_first[other]; column < end; column += kGroupColumns) {
           groups.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(end_row),
                             static_cast<std::uint32_t>(column),
                             static_cast<std::uint32_t>(std::min(column + kGroupColumns, end)),
@@ -25,7 +25,7 @@ std::vector<PairGroup> pair_groups(std::span<const std::int64_t> first_of_code) 
 SurfletSets::SurfletSets(std::span<const SurfletArrays> sets) {
   std::uint32_t first = 0;
   for (const SurfletArrays& set : sets) {
-    for (PairGroup pairs : pair_groups(set.first_of_code)) {
+    for (PairGroup pairs : pair_groups(set.code_first)) {
       for (std::uint32_t* row : {&pairs.first_row, &pairs.end_row, &pairs.first_column, &pairs.end_column}) {
         *row += first;
       }
@@ -34,7 +34,7 @@ SurfletSets::SurfletSets(std::span<const SurfletArrays> sets) {
       groups.push_back(pairs);
     }
     first += static_cast<std::uint32_t>(set.size());
-    num_codes += set.first_of_code.size() - 1;
+    num_codes += set.code_first.size() - 1;
   }
   stride = first;
   for (std::size_t d = 0; d < 9; ++d) {

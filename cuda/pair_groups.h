@@ -30,8 +30,8 @@ struct PairGroup {
 };
 
 // Groups that hold each pair of points exactly once. Points are sorted by their local codes, and those of
-// code l are first_of_code[l] .. first_of_code[l + 1] - 1.
-std::vector<PairGroup> pair_groups(std::span<const std::int64_t> first_of_code);
+// code l are code_first[l] .. code_first[l + 1] - 1.
+std::vector<PairGroup> pair_groups(std::span<const std::int64_t> code_first);
 
 // A group of kGroupRows threads counts one group of pairs. Surflets lie in memory as nine arrays of `stride`
 // floats. `totals` has the shape (num_local, kBins^4).
@@ -53,7 +53,7 @@ struct CountPairGroups {
   std::size_t stride;
   std::uint64_t* totals;
 
-  ASTROLITH_KERNEL static Surflet surflet_of(const float* from, std::size_t step, std::size_t k) {
+  ASTROLITH_KERNEL static Surflet read_surflet(const float* from, std::size_t step, std::size_t k) {
     const auto c = [&](std::size_t d) { return from[d * step + k]; };
     return {{c(0), c(1), c(2)}, {c(3), c(4), c(5)}, {c(6), c(7), c(8)}};
   }
@@ -95,11 +95,11 @@ struct CountPairGroups {
                               std::uint32_t* counters) const {
     const std::uint32_t row = pairs.first_row + thread;
     if (row >= pairs.end_row || begin >= row) return;
-    const Surflet one = surflet_of(surflets, stride, row);
+    const Surflet one = read_surflet(surflets, stride, row);
     std::uint32_t* mine = counters + (thread / 32) % kCopies * kWindow;
     const std::uint32_t end = row - begin < size ? row - begin : size;
     for (std::uint32_t k = 0; k < end; ++k) {
-      const std::int64_t code = surflet_code<kBins>(one, surflet_of(columns, kChunk, k)) - first;
+      const std::int64_t code = surflet_code<kBins>(one, read_surflet(columns, kChunk, k)) - first;
       if (kWindow == kCodes || (code >= 0 && code < kWindow)) add_atomically(mine + code, std::uint32_t{1});
     }
   }
@@ -112,9 +112,9 @@ struct CountPairGroups {
       std::uint64_t sum = 0;
       for (std::int64_t copy = 0; copy < kCopies; ++copy) sum += counters[copy * kWindow + k];
       if (sum == 0) continue;
-      const bool of_column = first + k >= kHalf;
-      const std::int64_t local = of_column ? pairs.column_code : pairs.row_code;
-      add_atomically(totals + local * kHalf + (first + k - (of_column ? kHalf : 0)), sum);
+      const bool is_column = first + k >= kHalf;
+      const std::int64_t local = is_column ? pairs.column_code : pairs.row_code;
+      add_atomically(totals + local * kHalf + (first + k - (is_column ? kHalf : 0)), sum);
     }
   }
 };

@@ -55,7 +55,7 @@ double mean_distance_from(double c, const std::vector<double>& values) {
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-int axes_of(std::size_t size, int bins) {
+int axis_count(std::size_t size, int bins) {
   int axes = 0;
   std::size_t power = 1;
   while (bins > 1 && power < size) {
@@ -104,7 +104,7 @@ double circular_earth_movers_distance(std::span<const double> f, std::span<const
 }
 
 std::vector<double> marginal(std::span<const double> frequencies, int bins, int axis) {
-  const int axes = axes_of(frequencies.size(), bins);
+  const int axes = axis_count(frequencies.size(), bins);
   if (axis < 0 || axis >= axes) {
     throw InputError("marginal: axis " + std::to_string(axis) + " is not among " + std::to_string(axes));
   }
@@ -119,7 +119,7 @@ std::vector<double> marginal(std::span<const double> frequencies, int bins, int 
 
 double marginal_earth_movers_distance(std::span<const double> f, std::span<const double> g, int bins) {
   check_sizes(f, g);
-  const int axes = axes_of(f.size(), bins);
+  const int axes = axis_count(f.size(), bins);
   double sum = circular_earth_movers_distance(marginal(f, bins, 0), marginal(g, bins, 0));
   for (int d = 1; d < axes; ++d) {
     sum += earth_movers_distance(marginal(f, bins, d), marginal(g, bins, d));

@@ -10,7 +10,7 @@ namespace astrolith {
 namespace {
 
 // The bin of a number in [0, 1] among equal bins.
-std::int32_t bin_of(double fraction, int bins) {
+std::int32_t bin_index(double fraction, int bins) {
   return std::clamp(static_cast<std::int32_t>(std::floor(fraction * bins)), 0, bins - 1);
 }
 
@@ -44,7 +44,7 @@ std::vector<std::int32_t> local_codes(std::span<const Vec3d> points, std::span<c
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double eta = normal_perturbation(points[i], normals[i], spread.center);
     const double kappa = bounded_curvature(curvatures[i] * spread.mean_square);
-    codes[i] = bin_of(eta / std::numbers::pi, bins) * bins + bin_of((kappa + 1) / 2, bins);
+    codes[i] = bin_index(eta / std::numbers::pi, bins) * bins + bin_index((kappa + 1) / 2, bins);
   }
   return codes;
 }

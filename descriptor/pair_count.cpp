@@ -83,11 +83,11 @@ struct Task {
   std::int64_t local, first_row, last_row;
 };
 
-std::vector<Task> tasks_of(const SurfletArrays& s) {
+std::vector<Task> make_tasks(const SurfletArrays& s) {
   std::vector<Task> tasks;
-  for (std::size_t l = 0; l + 1 < s.first_of_code.size(); ++l) {
-    const std::int64_t end = s.first_of_code[l + 1];
-    for (std::int64_t row = s.first_of_code[l]; row < end; row += kRowsPerTask) {
+  for (std::size_t l = 0; l + 1 < s.code_first.size(); ++l) {
+    const std::int64_t end = s.code_first[l + 1];
+    for (std::int64_t row = s.code_first[l]; row < end; row += kRowsPerTask) {
       tasks.push_back({static_cast<std::int64_t>(l), row, std::min(end, row + kRowsPerTask)});
     }
   }
@@ -101,8 +101,8 @@ void count_task(const SurfletArrays& s, const Task& task, std::vector<std::uint6
   constexpr std::int64_t kHalf = kCodes<kBins> / 2;
   std::vector<std::uint32_t> counters;
   for (std::int64_t other = 0; other <= task.local; ++other) {
-    const std::int64_t begin = s.first_of_code[static_cast<std::size_t>(other)];
-    const std::int64_t end = s.first_of_code[static_cast<std::size_t>(other) + 1];
+    const std::int64_t begin = s.code_first[static_cast<std::size_t>(other)];
+    const std::int64_t end = s.code_first[static_cast<std::size_t>(other) + 1];
     if (begin == end) continue;
     counters.assign(static_cast<std::size_t>(kCopies * kCodes<kBins>), 0);
     for (std::int64_t i = task.first_row; i < task.last_row; ++i) {
@@ -115,7 +115,7 @@ void count_task(const SurfletArrays& s, const Task& task, std::vector<std::uint6
 
 template <int kBins>
 std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local, const Progress& progress) {
-  const std::vector<Task> tasks = tasks_of(s);
+  const std::vector<Task> tasks = make_tasks(s);
   const auto num_tasks = static_cast<std::int64_t>(tasks.size());
   const auto size = static_cast<std::size_t>(num_local * kCodes<kBins> / 2);
   // Sums of integers do not depend on their order, so that each thread may keep its own.

@@ -107,7 +107,7 @@ PairInput pair_input(std::span<const Vec3d> points, std::vector<Vec3d> unit_norm
       scaled(points, max_distance), std::move(unit_normals), std::move(local), num_local, bins, max_distance};
 }
 
-ShapeHistogram histogram_of(const PairInput& input, std::span<const std::uint64_t> counts) {
+ShapeHistogram make_histogram(const PairInput& input, std::span<const std::uint64_t> counts) {
   ShapeHistogram histogram;
   histogram.bins = input.bins;
   histogram.max_distance = input.max_distance;
@@ -117,8 +117,8 @@ ShapeHistogram histogram_of(const PairInput& input, std::span<const std::uint64_
   return histogram;
 }
 
-std::vector<std::uint64_t> counts_of(const PairInput& input, const Progress& progress,
-                                     const PairCounter& counter) {
+std::vector<std::uint64_t> pair_counts(const PairInput& input, const Progress& progress,
+                                       const PairCounter& counter) {
   const auto count = [&](const auto& how) {
     return how(input.points, input.normals, input.local, input.num_local, input.bins, progress);
   };
@@ -159,7 +159,7 @@ ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const 
   check(points, normals, bins);
   const PairInput input = pair_input(points, unit_vectors(normals),
                                      std::vector<std::int32_t>(points.size(), 0), 1, bins, progress);
-  return histogram_of(input, counts_of(input, progress, counter));
+  return make_histogram(input, pair_counts(input, progress, counter));
 }
 
 PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normals,
@@ -180,7 +180,7 @@ PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normal
 }
 
 ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64_t> counts) {
-  ShapeHistogram histogram = histogram_of(input, counts);
+  ShapeHistogram histogram = make_histogram(input, counts);
   histogram.features = PairFeatures::ahd;
   return histogram;
 }
@@ -189,7 +189,7 @@ ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3
                              std::span<const double> curvatures, int bins, const Progress& progress,
                              const PairCounter& counter) {
   const PairInput input = ahd_input(points, normals, curvatures, bins, progress);
-  return ahd_histogram(input, counts_of(input, progress, counter));
+  return ahd_histogram(input, pair_counts(input, progress, counter));
 }
 
 }  // namespace astrolith

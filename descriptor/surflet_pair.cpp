@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-std::uint32_t hash_of(const Vec3d& p) {
+std::uint32_t position_hash(const Vec3d& p) {
   std::uint32_t hash = 0;
   for (const double value : {p.x, p.y, p.z}) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -20,15 +20,15 @@ std::uint32_t hash_of(const Vec3d& p) {
   return hash;
 }
 
-std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                    std::span<const std::int32_t> local) {
+std::vector<std::uint32_t> sort_surflets(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                                         std::span<const std::int32_t> local) {
   // Places with the same hash, such as repeated points, are ordered by all their numbers.
   const auto all = [&](std::uint32_t i) {
     const Vec3d &p = points[i], &n = normals[i];
     return std::tuple(p.x, p.y, p.z, n.x, n.y, n.z);
   };
   std::vector<std::tuple<std::int32_t, std::uint32_t, std::uint32_t>> keys(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) keys[i] = {local[i], hash_of(points[i]), i};
+  for (std::uint32_t i = 0; i < points.size(); ++i) keys[i] = {local[i], position_hash(points[i]), i};
   std::sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
     const auto [code_a, hash_a, i] = a;
     const auto [code_b, hash_b, j] = b;
@@ -46,13 +46,13 @@ std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<con
 SurfletArrays::SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                              std::span<const std::int32_t> local, int num_local) {
   for (auto& v : c) v.assign(points.size() + kSurfletPadding, 0.0f);
-  first_of_code.assign(static_cast<std::size_t>(num_local) + 1, 0);
+  code_first.assign(static_cast<std::size_t>(num_local) + 1, 0);
   std::size_t k = 0;
-  for (const std::uint32_t i : order_of(points, normals, local)) {
+  for (const std::uint32_t i : sort_surflets(points, normals, local)) {
     set(k++, surflet(to_float(points[i]), to_float(normals[i])));
-    ++first_of_code[static_cast<std::size_t>(local[i]) + 1];
+    ++code_first[static_cast<std::size_t>(local[i]) + 1];
   }
-  std::partial_sum(first_of_code.begin(), first_of_code.end(), first_of_code.begin());
+  std::partial_sum(code_first.begin(), code_first.end(), code_first.begin());
 }
 
 void SurfletArrays::set(std::size_t k, const Surflet& s) {

@@ -186,15 +186,15 @@ inline constexpr std::size_t kSurfletPadding = 64;
 // therefore changes nothing, and neighbours in space do not follow one another; their pairs with a third
 // point often share a bin.
 struct SurfletArrays {
-  std::array<std::vector<float>, 9> c;      // (n + kSurfletPadding) each
-  std::vector<std::int64_t> first_of_code;  // (num_local + 1)
+  std::array<std::vector<float>, 9> c;   // (n + kSurfletPadding) each
+  std::vector<std::int64_t> code_first;  // (num_local + 1)
 
   // Points must be in units of their largest distance, normals must have unit length, and local codes must be
   // in [0, num_local).
   SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                 std::span<const std::int32_t> local, int num_local);
 
-  std::int64_t size() const { return first_of_code.back(); }
+  std::int64_t size() const { return code_first.back(); }
   Surflet at(std::int64_t i) const {
     const auto k = static_cast<std::size_t>(i);
     return {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}};

@@ -78,7 +78,7 @@ class ShrinkingPolygon {
   std::size_t left_;
 };
 
-std::vector<std::uint32_t> corners_of(std::span<const Triangle> fan) {
+std::vector<std::uint32_t> fan_corners(std::span<const Triangle> fan) {
   std::vector<std::uint32_t> corners{fan[0][0], fan[0][1]};
   for (const Triangle& t : fan) corners.push_back(t[2]);
   return corners;
@@ -112,7 +112,7 @@ bool fan_covers_polygon(std::span<const Triangle> fan, const std::vector<Vec3d>&
 }
 
 void cut_ears(std::span<Triangle> fan, const std::vector<Vec3d>& vertices) {
-  const std::vector<std::uint32_t> corners = corners_of(fan);
+  const std::vector<std::uint32_t> corners = fan_corners(fan);
   ShrinkingPolygon polygon = in_plane(corners, vertices, newell_normal(fan, vertices));
   auto out = fan.begin();
   const auto cut = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

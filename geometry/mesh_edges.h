@@ -18,8 +18,8 @@ struct TriangleSide {
   bool forward;         // the side starts at low
 
   bool same_edge(const TriangleSide& o) const { return low == o.low && high == o.high; }
-  std::uint32_t corner_of_low() const { return 3 * triangle + (forward ? corner : (corner + 1u) % 3); }
-  std::uint32_t corner_of_high() const { return 3 * triangle + (forward ? (corner + 1u) % 3 : corner); }
+  std::uint32_t low_corner() const { return 3 * triangle + (forward ? corner : (corner + 1u) % 3); }
+  std::uint32_t high_corner() const { return 3 * triangle + (forward ? (corner + 1u) % 3 : corner); }
 };
 
 inline bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }

@@ -49,13 +49,13 @@ std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh) {
 }
 
 float triangle_quality(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  constexpr float kTwiceRootOfThree = 3.46410162f;
+  constexpr float kTwoSqrtThree = 3.46410162f;
   const Vec3f ab = b - a, ac = c - a;
   const float edges = squared_norm(ab) + squared_norm(ac) + squared_norm(c - b);
-  return edges > 0.0f ? kTwiceRootOfThree * norm(cross(ab, ac)) / edges : 0.0f;
+  return edges > 0.0f ? kTwoSqrtThree * norm(cross(ab, ac)) / edges : 0.0f;
 }
 
-QualityFigures quality_of(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles) {
+QualityFigures mesh_quality(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles) {
   constexpr std::int64_t kGrain = 4096;
   constexpr std::size_t kPercent = 100;
   if (triangles.empty()) return {};

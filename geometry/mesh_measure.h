@@ -32,7 +32,7 @@ struct QualityFigures {
 };
 
 // The figures of a mesh; both are 0 for a mesh without triangles. Indices must be in range.
-QualityFigures quality_of(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles);
+QualityFigures mesh_quality(std::span<const MeshVertex> vertices, std::span<const Triangle> triangles);
 
 // For a closed oriented mesh: 1 inside, 0 outside, 2 where two bodies overlap, -1 inside a body that is
 // inside out. It is the sum of the solid angles of all triangles as seen from p, over 4 pi (Van Oosterom and

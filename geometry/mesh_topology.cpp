@@ -28,7 +28,7 @@ std::vector<Triangle> faces_in(const Box& box, const TriangleMesh& mesh) {
 
 // The centre of a face, or also its corners and the middles of its sides: large faces pass through another
 // part that holds none of their corners.
-std::vector<Vec3d> places_of(const TriangleMesh& mesh, const Triangle& t, bool coarse) {
+std::vector<Vec3d> probe_points(const TriangleMesh& mesh, const Triangle& t, bool coarse) {
   const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   const Vec3d center = (a + b + c) * (1.0 / 3.0);
   if (!coarse) return {center};
@@ -52,8 +52,8 @@ EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
     ++walk.edges;
     for (const TriangleSide& side : edge.subspan(1)) {
-      walk.fans.unite(edge[0].corner_of_low(), side.corner_of_low());
-      walk.fans.unite(edge[0].corner_of_high(), side.corner_of_high());
+      walk.fans.unite(edge[0].low_corner(), side.low_corner());
+      walk.fans.unite(edge[0].high_corner(), side.high_corner());
     }
     if (edge.size() == 1) ++topology.boundary_edges;
     if (edge.size() >= 2 && !runs_both_ways_equally(edge)) ++topology.misoriented_edges;
@@ -93,7 +93,7 @@ std::int64_t count_components(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<SurfacePart> parts_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number) {
+std::vector<SurfacePart> split_parts(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number) {
   std::vector<SurfacePart> parts(1 + *std::max_element(number.begin(), number.end()));
   // Parts may share a vertex: it is numbered anew by each part that comes upon it.
   std::vector<std::uint32_t> owner(mesh.vertices.size(), 0xffffffff), place(mesh.vertices.size(), 0);
@@ -130,7 +130,7 @@ double PartNesting::share_inside(const SurfacePart& a, const SurfacePart& b) {
   const bool coarse = a.mesh.triangles.size() < 1000;
   std::vector<Vec3d> places;
   for (std::size_t i = 0; i < near.size(); i += near.size() / kMostFaces + 1) {
-    for (const Vec3d& p : places_of(a.mesh, near[i], coarse)) places.push_back(p);
+    for (const Vec3d& p : probe_points(a.mesh, near[i], coarse)) places.push_back(p);
   }
   angles_left_ -= static_cast<double>(places.size()) * static_cast<double>(b.mesh.triangles.size());
   if (spent()) return 0.0;

@@ -16,7 +16,7 @@ struct SurfacePart {
 };
 
 // Splits a mesh by `number`, (#F) the part of each face, from 0 without gaps.
-std::vector<SurfacePart> parts_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number);
+std::vector<SurfacePart> split_parts(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number);
 
 // Whether all of the inner box lies in the outer one.
 bool box_holds(const Box& outer, const Box& inner);

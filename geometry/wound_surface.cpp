@@ -26,7 +26,7 @@ constexpr std::uint32_t kNone = 0xffffffff;
 class VertexCells {
  public:
   VertexCells(const TriangleMesh& mesh, double radius)
-      : radius_(radius), origin_(mesh.bounds().min), cell_of_vertex_(mesh.vertices.size()) {
+      : radius_(radius), origin_(mesh.bounds().min), vertex_cell_(mesh.vertices.size()) {
     // Most comparisons end at x, which therefore stands beside the index.
     struct Entry {
       double x;
@@ -35,16 +35,17 @@ class VertexCells {
     std::vector<Entry> entries;
     entries.reserve(mesh.vertices.size());
     for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
-      entries.push_back({place_of(mesh.vertices[i]).x, i});
+      entries.push_back({cell_coordinates(mesh.vertices[i]).x, i});
     std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
       if (a.x != b.x) return a.x < b.x;
-      const Vec3d p = place_of(mesh.vertices[a.vertex]), q = place_of(mesh.vertices[b.vertex]);
+      const Vec3d p = cell_coordinates(mesh.vertices[a.vertex]),
+                  q = cell_coordinates(mesh.vertices[b.vertex]);
       return std::tie(p.y, p.z, a.vertex) < std::tie(q.y, q.z, b.vertex);
     });
     for (const Entry& entry : entries) {
-      const Vec3d place = place_of(mesh.vertices[entry.vertex]);
+      const Vec3d place = cell_coordinates(mesh.vertices[entry.vertex]);
       if (places_.empty() || before(places_.back(), place)) places_.push_back(place);
-      cell_of_vertex_[entry.vertex] = static_cast<std::uint32_t>(places_.size() - 1);
+      vertex_cell_[entry.vertex] = static_cast<std::uint32_t>(places_.size() - 1);
     }
     newest_.assign(places_.size(), kNone);
   }
@@ -57,7 +58,7 @@ class VertexCells {
         if (squared_norm(kept[i] - p) <= radius_ * radius_) first = std::min(first, i);
       }
     };
-    const std::uint32_t own = cell_of_vertex_[vertex];
+    const std::uint32_t own = vertex_cell_[vertex];
     if (radius_ == 0.0) return newest_[own];
     for (double dx = -1.0; dx <= 1.0; ++dx) {
       for (double dy = -1.0; dy <= 1.0; ++dy) {
@@ -72,7 +73,7 @@ class VertexCells {
 
   // Keeps a vertex. The k-th call keeps the one with index k among the kept, counted from 0.
   void keep(std::uint32_t vertex) {
-    std::uint32_t& newest = newest_[cell_of_vertex_[vertex]];
+    std::uint32_t& newest = newest_[vertex_cell_[vertex]];
     const auto index = static_cast<std::uint32_t>(older_.size());
     older_.push_back(newest);
     newest = index;
@@ -83,7 +84,7 @@ class VertexCells {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   }
   // Coordinates of the cell: whole numbers in doubles, which no small tolerance can overflow.
-  Vec3d place_of(const Vec3d& p) const {
+  Vec3d cell_coordinates(const Vec3d& p) const {
     if (radius_ == 0.0) return p;
     const Vec3d q = (p - origin_) * (0.999 / radius_);
     return {std::floor(q.x), std::floor(q.y), std::floor(q.z)};
@@ -92,7 +93,7 @@ class VertexCells {
   double radius_;
   Vec3d origin_;
   std::vector<Vec3d> places_;                  // (#cells) sorted
-  std::vector<std::uint32_t> cell_of_vertex_;  // (#V)
+  std::vector<std::uint32_t> vertex_cell_;     // (#V)
   std::vector<std::uint32_t> newest_, older_;  // (#cells), (#kept): chains of kept vertices
 };
 
@@ -244,7 +245,7 @@ TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
 TriangleMesh orient_faces(TriangleMesh mesh) {
   if (mesh.triangles.empty()) return mesh;
   const Components components = wind_components(mesh);
-  const std::vector<SurfacePart> parts = parts_of(mesh, components.number);
+  const std::vector<SurfacePart> parts = split_parts(mesh, components.number);
   std::vector<char> inside_out(parts.size());
   bool any = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {

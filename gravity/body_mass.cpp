@@ -12,7 +12,7 @@ namespace {
 std::array<double, 3> components(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 // Sums of y y^T over tetrahedra become the inertia tensor of their union.
-Matrix3 inertia_of(const Matrix3& second) {
+Matrix3 inertia_tensor(const Matrix3& second) {
   const double trace = second[0][0] + second[1][1] + second[2][2];
   Matrix3 inertia{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -34,8 +34,8 @@ struct RegularSums {
         const HarmonicValue turned = HarmonicValue{y.x, y.y} * diagonal;
         diagonal = {0.5 / m * turned.re, 0.5 / m * turned.im};
       }
-      harmonics_of_order(y, m, degree, diagonal,
-                         [&](int l, const HarmonicValue& value) { values[place(l, m)] += value; });
+      visit_harmonics(y, m, degree, diagonal,
+                      [&](int l, const HarmonicValue& value) { values[place(l, m)] += value; });
     }
   }
 
@@ -54,7 +54,7 @@ void add_facet(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::span<const T
 }
 
 // Facets of one task: as many as take some milliseconds, since the program stops between tasks only.
-std::int64_t facets_of_task(int degree, std::size_t rule_points) {
+std::int64_t facets_per_task(int degree, std::size_t rule_points) {
   const auto terms = static_cast<std::int64_t>(rule_points * RegularSums::count(degree));
   return std::clamp<std::int64_t>(20'000'000 / terms, 1, 1024);
 }
@@ -62,13 +62,13 @@ std::int64_t facets_of_task(int degree, std::size_t rule_points) {
 // Tasks are done in stretches, so that the sums of few tasks are held at a time.
 RegularSums volume_sums(const TriangleMesh& mesh, const Vec3d& center, double radius, int degree,
                         const Progress& progress) {
-  constexpr std::int64_t kTasksOfStretch = 256;
+  constexpr std::int64_t kStretchTasks = 256;
   const std::vector<TrianglePoint> rule = triangle_rule(degree);
   const auto facets = static_cast<std::int64_t>(mesh.triangles.size());
-  const std::int64_t size = facets_of_task(degree, rule.size()), tasks = (facets + size - 1) / size;
+  const std::int64_t size = facets_per_task(degree, rule.size()), tasks = (facets + size - 1) / size;
   RegularSums sums(degree);
-  for (std::int64_t first = 0; first < tasks; first += kTasksOfStretch) {
-    const std::int64_t end = std::min(first + kTasksOfStretch, tasks);
+  for (std::int64_t first = 0; first < tasks; first += kStretchTasks) {
+    const std::int64_t end = std::min(first + kStretchTasks, tasks);
     std::vector<RegularSums> parts(static_cast<std::size_t>(end - first), RegularSums(degree));
     reported_parallel_for({first, end, tasks}, progress, "harmonics", [&](std::int64_t task) {
       RegularSums& part = parts[static_cast<std::size_t>(task - first)];
@@ -117,7 +117,7 @@ BodyMass body_mass(const TriangleMesh& mesh) {
     for (std::size_t q = 0; q < 3; ++q) second[p][q] -= body.volume * e[p] * e[q];
   }
   body.center = origin + center;
-  body.inertia = inertia_of(second);
+  body.inertia = inertia_tensor(second);
   return body;
 }
 

@@ -178,7 +178,7 @@ Harmonics volume_multipoles(const GravityMultipoles& surface, int order) {
 
 // The root mean square over directions of the sum of conj(M_lm) S_lm at distance 1 for one l. The mean square
 // of S_lm is (l - m)! (l + m)! / (2 l + 1).
-double strength_of_degree(const Harmonics& volume, int l) {
+double degree_strength(const Harmonics& volume, int l) {
   double sum = 0.0;
   for (int m = 0; m <= l; ++m) {
     const HarmonicValue& v = volume[static_cast<std::size_t>(harmonic_index(l, m))];
@@ -209,7 +209,7 @@ void make_far(GravityTree& tree) {
   double power = std::fabs(volume[0].re);
   for (int l = 0; l <= tree.most_order; ++l, power *= tree.nodes.front().radius) {
     if (l + 2 >= tree.most_order)
-      tree.far_strength = std::max(tree.far_strength, strength_of_degree(volume, l) / power);
+      tree.far_strength = std::max(tree.far_strength, degree_strength(volume, l) / power);
   }
 }
 

@@ -97,20 +97,20 @@ ASTROLITH_SIMD_CLONES void least_orders(const GravityNode& node, int most_order,
   }
 }
 
-// Walks the tree for points that are on. orders_of(node, orders) says to what order each point may take the
+// Walks the tree for points that are on. find_orders(node, orders) says to what order each point may take the
 // node's multipoles, or -1 where it must open the node. Each point goes its own way, so that its sums do not
 // depend on the points beside it. A leaf of 12 to 24 facets costs more by its facets than by its multipoles
 // of the highest order.
-template <typename OrdersOf>
-void walk(const GravityTree& tree, const GravityBatch& points, const PointRow& on, const OrdersOf& orders_of,
-          GravitySums& sums) {
+template <typename FindOrders>
+void walk(const GravityTree& tree, const GravityBatch& points, const PointRow& on,
+          const FindOrders& find_orders, GravitySums& sums) {
   const auto end = static_cast<std::uint32_t>(tree.nodes.size());
   std::array<std::uint32_t, kPointBatch> from;  // the node where a point goes on
   for (std::size_t k = 0; k < kPointBatch; ++k) from[k] = on[k] > 0.0 ? 0 : end;
   for (std::uint32_t i = *std::min_element(from.begin(), from.end()); i < end;) {
     const GravityNode& node = tree.nodes[i];
     PointRow orders, open{};
-    orders_of(node, orders);
+    find_orders(node, orders);
     bool taken = false, opened = false;
     for (std::size_t k = 0; k < kPointBatch; ++k) {
       if (i < from[k]) {
@@ -187,7 +187,7 @@ double far_bound(const GravityTree& tree, double d) {
 double far_error(const GravityTree& tree, double d) {
   return std::sqrt(2.0 * tree.most_order + 1.0) * tree.far_strength * far_bound(tree, d);
 }
-double far_error_of_potential(const GravityTree& tree, double d) {
+double far_potential_error(const GravityTree& tree, double d) {
   return far_error(tree, d) * tree.nodes.front().radius / (d * (tree.most_order + 1));
 }
 
@@ -267,7 +267,7 @@ ExactSums exact_sums(const GravityTree& tree, const GravityBatch& points) {
       for (std::size_t k = 0; k < 3; ++k) exact.sums.layers[k][i] = by_body.layers[k][i];
       exact.off_layers[i] = off;
     }
-    if (const double off = far_error_of_potential(tree, distances[i]) * std::fabs(by_body.work[i]);
+    if (const double off = far_potential_error(tree, distances[i]) * std::fabs(by_body.work[i]);
         off < exact.off_work[i]) {
       exact.sums.work[i] = by_body.work[i];
       exact.off_work[i] = off;
@@ -278,33 +278,34 @@ ExactSums exact_sums(const GravityTree& tree, const GravityBatch& points) {
   return exact;
 }
 
-// Calls use(sums_of(batch), index in the batch, place) for every point.
+// Calls use(evaluate_sums(batch), index in the batch, place) for every point.
 template <typename Sums, typename Use>
 void evaluate(const GravityTree& tree, std::span<const Vec3d> points, const Progress& progress,
-              const Sums& sums_of, const Use& use) {
+              const Sums& evaluate_sums, const Use& use) {
   const std::vector<Target> targets = ordered_targets(tree, points);
   const auto batches = static_cast<std::int64_t>((points.size() + kPointBatch - 1) / kPointBatch);
   reported_parallel_for({0, batches, batches}, progress, "sums of gravity", [&](std::int64_t i) {
     const std::size_t first = static_cast<std::size_t>(i) * kPointBatch;
     const std::span own =
         std::span(targets).subspan(first, std::min<std::size_t>(kPointBatch, targets.size() - first));
-    const auto sums = sums_of(make_batch(own));
+    const auto sums = evaluate_sums(make_batch(own));
     for (std::size_t k = 0; k < own.size(); ++k) use(sums, k, own[k].place);
   });
 }
 
-Attraction attraction_of(const GravityTree& tree, const GravitySums& sums, std::size_t k) {
+Attraction to_attraction(const GravityTree& tree, const GravitySums& sums, std::size_t k) {
   return {0.5 * tree.scale * tree.scale * sums.work[k],
           -tree.scale * Vec3d{sums.layers[0][k], sums.layers[1][k], sums.layers[2][k]}};
 }
 
 template <typename Sums>
 std::vector<Attraction> attractions(const GravityTree& tree, std::span<const Vec3d> points,
-                                    const Progress& progress, const Sums& sums_of) {
+                                    const Progress& progress, const Sums& evaluate_sums) {
   std::vector<Attraction> values(points.size());
-  evaluate(tree, points, progress, sums_of, [&](const GravitySums& sums, std::size_t k, std::uint32_t place) {
-    values[place] = attraction_of(tree, sums, k);
-  });
+  evaluate(tree, points, progress, evaluate_sums,
+           [&](const GravitySums& sums, std::size_t k, std::uint32_t place) {
+             values[place] = to_attraction(tree, sums, k);
+           });
   return values;
 }
 
@@ -345,7 +346,7 @@ ExactAttractions PolyhedronGravity::exactly_at(std::span<const Vec3d> points,
   evaluate(
       tree_, points, progress, [&](const GravityBatch& batch) { return exact_sums(tree_, batch); },
       [&](const ExactSums& sums, std::size_t k, std::uint32_t place) {
-        exact.values[place] = attraction_of(tree_, sums.sums, k);
+        exact.values[place] = to_attraction(tree_, sums.sums, k);
         exact.errors[place] = {0.5 * tree_.scale * tree_.scale * sums.off_work[k],
                                tree_.scale * sums.off_layers[k]};
       });

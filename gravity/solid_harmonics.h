@@ -42,8 +42,8 @@ using Harmonics = std::array<HarmonicValue, kHarmonics>;
 
 // Calls visit(l, R_lm(y)) for l = m .. last, where R_mm(y) is given. Multiples of R_mm give multiples of all.
 template <typename Visit>
-inline void harmonics_of_order(const Vec3d& y, int m, int last, const HarmonicValue& diagonal,
-                               const Visit& visit) {
+inline void visit_harmonics(const Vec3d& y, int m, int last, const HarmonicValue& diagonal,
+                            const Visit& visit) {
   const double square = squared_norm(y);
   HarmonicValue before{}, now = diagonal;
   visit(m, now);
@@ -63,7 +63,7 @@ inline void regular_harmonics(const Vec3d& y, int order, Harmonics& r) {
       const double c = -0.5 / m;
       diagonal = HarmonicValue{c * y.x, c * y.y} * diagonal;
     }
-    harmonics_of_order(y, m, order, diagonal, [&](int l, const HarmonicValue& value) {
+    visit_harmonics(y, m, order, diagonal, [&](int l, const HarmonicValue& value) {
       r[static_cast<std::size_t>(harmonic_index(l, m))] = value;
     });
   }

@@ -88,7 +88,7 @@ std::vector<GradientSums> gradient_sums(const TriangleMesh& mesh, std::span<cons
 using Rows = std::array<Vec3d, 3>;
 
 // change * (spread + damping)^-1; zero for a vertex without neighbours.
-Rows gradient_of(const GradientSums& sums) {
+Rows solve_gradient(const GradientSums& sums) {
   const Matrix3& s = sums.spread;
   const double damping = kDamping * (s[0][0] + s[1][1] + s[2][2]);
   const Vec3d a{s[0][0] + damping, s[0][1], s[0][2]}, b{s[1][0], s[1][1] + damping, s[1][2]},
@@ -110,7 +110,7 @@ std::vector<Vec3d> continued(const TriangleMesh& mesh, const CoarseSurface& coar
   const std::vector<GradientSums> sums = gradient_sums(coarse.mesh, values);
   std::vector<Rows> gradients;
   gradients.reserve(sums.size());
-  for (const GradientSums& s : sums) gradients.push_back(gradient_of(s));
+  for (const GradientSums& s : sums) gradients.push_back(solve_gradient(s));
   std::vector<Vec3d> accelerations(mesh.vertices.size());
   for (std::size_t i = 0; i < accelerations.size(); ++i) {
     const std::uint32_t cell = coarse.cell[i];
@@ -122,7 +122,7 @@ std::vector<Vec3d> continued(const TriangleMesh& mesh, const CoarseSurface& coar
 }
 
 // The centrifugal acceleration at unit distance from the axis, divided by G times the density.
-double spin_of(const BodyMotion& motion) {
+double spin_rate(const BodyMotion& motion) {
   if (!(motion.rotation_hours > 0.0)) return 0.0;
   const double turn = 2.0 * std::numbers::pi / (3600.0 * motion.rotation_hours);
   return turn * turn / (kGravitationalConstant * motion.density);
@@ -131,7 +131,7 @@ double spin_of(const BodyMotion& motion) {
 // Makes verticals of accelerations at the points, for G times density = 1.
 void turn_upwards(std::span<const Vec3d> points, const Vec3d& center, const BodyMotion& motion,
                   std::vector<Vec3d>& accelerations) {
-  const double spin = spin_of(motion);
+  const double spin = spin_rate(motion);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d from = points[i] - center;
     accelerations[i] = normalized(-1.0 * (accelerations[i] + spin * Vec3d{from.x, from.y, 0.0}));

@@ -109,18 +109,18 @@ class FieldVisitor {
   void field_if(bool written, std::string_view name, T&& value, const Limits&... limits) {
     visit_field(name, false, written, value, limits...);
   }
-  // A field that holds one of several words. `word_of` gives the word for a value.
+  // A field that holds one of several words. `to_word` gives the word for a value.
   template <class T, std::size_t n>
-  void word(std::string_view name, T& value, const T (&values)[n], std::string_view (*word_of)(T)) {
-    std::string text(word_of(value));
+  void word(std::string_view name, T& value, const T (&values)[n], std::string_view (*to_word)(T)) {
+    std::string text(to_word(value));
     field(name, text);
-    choose(name, value, values, word_of, text);
+    choose(name, value, values, to_word, text);
   }
   template <class T, std::size_t n>
-  void required_word(std::string_view name, T& value, const T (&values)[n], std::string_view (*word_of)(T)) {
-    std::string text(reading() ? std::string_view() : word_of(value));
+  void required_word(std::string_view name, T& value, const T (&values)[n], std::string_view (*to_word)(T)) {
+    std::string text(reading() ? std::string_view() : to_word(value));
     required(name, text);
-    choose(name, value, values, word_of, text);
+    choose(name, value, values, to_word, text);
   }
   // A field of older recipes. A reader takes the one word that changes nothing, and fails with `message` on
   // any other; other visitors do not see the field.
@@ -251,12 +251,12 @@ class FieldVisitor {
   }
 
   template <class T, std::size_t n>
-  void choose(std::string_view name, T& value, const T (&values)[n], std::string_view (*word_of)(T),
+  void choose(std::string_view name, T& value, const T (&values)[n], std::string_view (*to_word)(T),
               std::string_view text) {
     if (!reading()) return;
     std::vector<std::string_view> words;
     for (const T candidate : values) {
-      if (text == words.emplace_back(word_of(candidate))) {
+      if (text == words.emplace_back(to_word(candidate))) {
         value = candidate;
         return;
       }

@@ -56,14 +56,14 @@ void check_population(const BodyPopulation& population, const Place& place) {
 // A word that may be left out.
 template <class T, std::size_t n>
 void optional_word(FieldVisitor& v, std::string_view name, std::optional<T>& value, const T (&values)[n],
-                   std::string_view (*word_of)(T)) {
+                   std::string_view (*to_word)(T)) {
   std::optional<std::string> text;
-  if (value) text = std::string(word_of(*value));
+  if (value) text = std::string(to_word(*value));
   v.field(name, text);
   if (!v.reading() || !text) return;
   std::vector<std::string_view> words;
   for (const T candidate : values) {
-    if (*text == words.emplace_back(word_of(candidate))) value = candidate;
+    if (*text == words.emplace_back(to_word(candidate))) value = candidate;
   }
   if (!value)
     v.place().field(name).fail("must be " + quote_list(words, " or ") + ", is " + quote_text(*text));

@@ -94,7 +94,7 @@ class BackendMesher {
     auto failure = zeros_on<std::uint32_t>(backend_, 1);
     const CulledBlocks<Backend> culled = culler_.cull(first_z, wanted, failure);
     if (backend_.read(failure, 0) != 0) fail_at_border();
-    const std::vector<std::vector<BlockColumn>> columns = columns_of(culled.on_host, first_z, wanted);
+    const std::vector<std::vector<BlockColumn>> columns = layer_columns(culled.on_host, first_z, wanted);
     KeptLayer<Backend> last{{}, 0, columns.back(), {}, first_z + static_cast<int>(columns.size()) - 1};
     const std::vector<BlockPlace> places = place_blocks(grid_, first_z, columns, kept_.index, last.index);
     last.first = places.size() - columns.back().size();
@@ -114,8 +114,8 @@ class BackendMesher {
   }
 
   // The blocks of each layer, for as many layers as hold most_blocks_ blocks, but at least one.
-  std::vector<std::vector<BlockColumn>> columns_of(const std::vector<CullNode>& blocks, int first_z,
-                                                   int layers) const {
+  std::vector<std::vector<BlockColumn>> layer_columns(const std::vector<CullNode>& blocks, int first_z,
+                                                      int layers) const {
     std::vector<std::vector<BlockColumn>> columns(static_cast<std::size_t>(layers));
     for (const CullNode& b : blocks) columns[static_cast<std::size_t>(b.z - first_z)].push_back({b.x, b.y});
     std::size_t kept = 1, sum = columns.front().size();
@@ -159,7 +159,7 @@ class BackendMesher {
 template <class Backend>
 MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
-  return BackendMesher<Backend>(backend, field.tables(), grid_of_field(bounds, resolution, tile), sink)
+  return BackendMesher<Backend>(backend, field.tables(), field_grid(bounds, resolution, tile), sink)
       .run(progress);
 }
 
@@ -172,7 +172,7 @@ MeshStatistics mesh_patch_on(Backend& backend, const PatchField& field, double s
   const FieldView& tables = field.whole().patch_tables();
   if (!(tables.patch.origin == field.place().origin))
     throw std::invalid_argument("mesh_patch_on: the field was made for another patch");
-  return BackendMesher<Backend>(backend, tables, grid_of_patch(field.place(), size, resolution), sink)
+  return BackendMesher<Backend>(backend, tables, patch_grid(field.place(), size, resolution), sink)
       .run(progress);
 }
 

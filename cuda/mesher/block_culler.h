@@ -111,7 +111,7 @@ class BlockCuller {
     auto narrowed = write_lists<std::uint32_t>(
         backend_, "narrowing lists", lists,
         NarrowLists{field_, grid_, lists_, wide_margin_, level.nodes.data(), parents, nodes_a_parent},
-        shares_of(lists));
+        share_count(lists));
     level.ranges = backend_.template allocate<ListRange>(lists);
     backend_.launch("finding lists", lists, MakeRanges{narrowed.first.data(), level.ranges.data()});
     level.numbers = std::move(narrowed.items);

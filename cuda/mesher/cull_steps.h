@@ -76,7 +76,7 @@ struct NarrowLists {
     return widened(grid.in_patch ? united(inside, projected) : inside, wide_margin);
   }
   // The box that the elements of a list must reach.
-  ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {
+  ASTROLITH_HD Box reached_box(const CullNode& node, std::uint32_t list) const {
     const Box box = grid.box_in_body(node.x, node.y, node.z, node.size);
     if (lists.is_boulders(list)) return box;
     if (lists.is_craters(list)) return projected_block(field, box);
@@ -94,10 +94,10 @@ struct NarrowLists {
     const std::size_t n = i / lists.count();
     const auto list = static_cast<std::uint32_t>(i % lists.count());
     if (nodes[n].size == 0) return;
-    const Box box = box_of(nodes[n], list);
-    const ListRange of_parent = parents.ranges[n / nodes_a_parent * lists.count() + list];
-    const auto begin = of_parent.first + static_cast<std::uint32_t>(share.begin(of_parent.count)),
-               end = of_parent.first + static_cast<std::uint32_t>(share.end(of_parent.count));
+    const Box box = reached_box(nodes[n], list);
+    const ListRange parent_range = parents.ranges[n / nodes_a_parent * lists.count() + list];
+    const auto begin = parent_range.first + static_cast<std::uint32_t>(share.begin(parent_range.count)),
+               end = parent_range.first + static_cast<std::uint32_t>(share.end(parent_range.count));
     for (std::uint32_t k = begin; k < end; ++k) {
       if (reaches(list, parents.numbers[k], box)) write(parents.numbers[k]);
     }
@@ -112,7 +112,7 @@ struct MakeRanges {
 };
 
 // The `Lists` of one node for field_content() (synthesis/field/field_content.h).
-struct ListsOfNode {
+struct NodeFieldLists {
   const FieldView& field;
   const std::uint32_t* numbers;
   const ListRange* ranges;  // (lists)
@@ -153,11 +153,11 @@ struct FlagMixed {
     const CullNode node = nodes.nodes[i];
     flags[i] = 0;
     if (node.size == 0) return;
-    const ListsOfNode of_node{field, nodes.numbers, nodes.ranges + i * lists.count()};
+    const NodeFieldLists node_lists{field, nodes.numbers, nodes.ranges + i * lists.count()};
     Interval kept[kMostKeptHeights];
     const BlockContent content =
-        field_content(field, of_node, grid.box_in_body(node.x, node.y, node.z, node.size),
-                      {scratch + of_node.ranges[0].first, kept});
+        field_content(field, node_lists, grid.box_in_body(node.x, node.y, node.z, node.size),
+                      {scratch + node_lists.ranges[0].first, kept});
     if (content == BlockContent::kInside && grid.closed && is_at_border(node)) {
       *failure = static_cast<std::uint32_t>(MeshFailure::kBorder);
     }

@@ -73,8 +73,8 @@ struct GatherGabor {
   template <typename Writer>
   ASTROLITH_HD void operator()(std::size_t i, ListShare share, Writer& write) const {
     const std::uint32_t lists = from.field.gabor_lists.count;
-    const LeafLists of_block{metaballs.spheres, metaballs.first + i / lists * from.lists.leaves};
-    gather_gabor<frame>(from.field, static_cast<std::uint32_t>(i % lists), of_block, from.box(i / lists),
+    const LeafLists block_lists{metaballs.spheres, metaballs.first + i / lists * from.lists.leaves};
+    gather_gabor<frame>(from.field, static_cast<std::uint32_t>(i % lists), block_lists, from.box(i / lists),
                         write, share);
   }
 };
@@ -93,7 +93,7 @@ class GatheredLists {
         landforms_(write_lists<std::uint32_t>(backend, "gathering craters and boulders",
                                               count * landform_lists_, GatherLandforms{from})),
         spots_(write_lists<SpotImpulse>(backend, "gathering spots", count * spot_lists_, GatherSpots{from},
-                                        shares_of(count * spot_lists_))),
+                                        share_count(count * spot_lists_))),
         gabor_(from.grid.in_patch ? gather_gabor_lists<Frame::kPatch>(backend, from, count)
                                   : gather_gabor_lists<Frame::kBody>(backend, from, count)) {}
 
@@ -125,7 +125,7 @@ class GatheredLists {
                                            GatherMetaballs{from, from.lists.leaves + from.lists.landforms});
     return write_lists<GaborImpulse>(backend, "gathering Gabor impulses", count * gabor_lists_,
                                      Gather{from, {wide.items.data(), wide.first.data()}},
-                                     shares_of(count * gabor_lists_));
+                                     share_count(count * gabor_lists_));
   }
 
   std::uint32_t leaves_, spot_lists_, gabor_lists_, landform_lists_;

@@ -13,15 +13,15 @@ struct ImpulseCells {
   const FieldView& field;
   Box block;
   const FieldLayer* layer = nullptr;
-  mutable double of_gabor = 0.0, of_spots = 0.0;
+  mutable double gabor_cells = 0.0, spot_cells = 0.0;
 
   template <class Noise>
   void operator()(const Noise& noise) const {
     constexpr NoiseLists kLists = Noise::kTraits.lists;
     if constexpr (kLists == NoiseLists::kGabor) {
-      of_gabor += count_cells(noise, field.arrays, projected_block(field, block).longest_side());
+      gabor_cells += count_cells(noise, field.arrays, projected_block(field, block).longest_side());
     } else if constexpr (kLists == NoiseLists::kSpots) {
-      of_spots +=
+      spot_cells +=
           count_cells(noise, field.arrays, displaced_layer_box(block, layer->join.displaced).longest_side());
     } else {
       static_assert(kLists == NoiseLists::kNone || kLists == NoiseLists::kCraters);
@@ -39,8 +39,8 @@ std::string obstacle_on_gpu(const FieldView& field, double block_side, double mo
     cells.layer = &layer;
     field.noise(layer).visit(cells);
   }
-  if (cells.of_spots > most_cells) return "spots so much smaller than the mesh's cells";
-  return cells.of_gabor > most_cells ? "Gabor kernels so much smaller than the mesh's cells" : "";
+  if (cells.spot_cells > most_cells) return "spots so much smaller than the mesh's cells";
+  return cells.gabor_cells > most_cells ? "Gabor kernels so much smaller than the mesh's cells" : "";
 }
 
 }  // namespace astrolith

@@ -11,7 +11,7 @@ struct Neighbours {
   bool below_is_in_batch;
 };
 
-std::array<std::int32_t, 8> owners_of(const Neighbours& n, int x, int y, std::int32_t own) {
+std::array<std::int32_t, 8> find_owners(const Neighbours& n, int x, int y, std::int32_t own) {
   std::array<std::int32_t, 8> owners;
   owners.fill(BlockPlace::kNone);
   for (int i = 1; i < 8; ++i) {
@@ -38,11 +38,11 @@ std::uint32_t lacking_sides(const Neighbours& n, int x, int y) {
 }
 
 // The numbers, within its layer, of the first block of a row of blocks and of the block after its last.
-struct RowOfBlocks {
+struct BlockRow {
   std::size_t first, end;
 };
-RowOfBlocks row_around(std::span<const BlockColumn> layer, std::size_t i) {
-  RowOfBlocks row{i, i + 1};
+BlockRow row_around(std::span<const BlockColumn> layer, std::size_t i) {
+  BlockRow row{i, i + 1};
   while (row.first > 0 && layer[row.first - 1].y == layer[i].y) --row.first;
   while (row.end < layer.size() && layer[row.end].y == layer[i].y) ++row.end;
   return row;
@@ -50,12 +50,12 @@ RowOfBlocks row_around(std::span<const BlockColumn> layer, std::size_t i) {
 
 }  // namespace
 
-MeshGrid grid_of_field(const Box& bounds, int resolution, MeshTile tile) {
+MeshGrid field_grid(const Box& bounds, int resolution, MeshTile tile) {
   const SampleGrid samples = make_sample_grid(bounds, resolution);
   return {{samples, tile_window<kBlockCells>(samples, tile), true}};
 }
 
-MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution) {
+MeshGrid patch_grid(const PatchPlace& place, double size, int resolution) {
   const SampleGrid samples = make_patch_grid(size, resolution);
   return {{samples, patch_window(samples), false}, true, place};
 }
@@ -77,12 +77,12 @@ std::vector<BlockPlace> place_blocks(const MeshGrid& grid, int first_z,
                        l + 1 < layers.size() ? &index[l + 1] : nullptr, l > 0};
     const std::vector<BlockColumn>& layer = layers[l];
     const auto first = static_cast<std::uint32_t>(places.size());
-    RowOfBlocks row{0, 0};
+    BlockRow row{0, 0};
     for (std::size_t i = 0; i < layer.size(); ++i) {
       if (i == row.end) row = row_around(layer, i);
       const BlockColumn c = layer[i];
       const auto own = static_cast<std::int32_t>(places.size());
-      places.push_back({c.x, c.y, first_z + static_cast<int>(l), owners_of(n, c.x, c.y, own),
+      places.push_back({c.x, c.y, first_z + static_cast<int>(l), find_owners(n, c.x, c.y, own),
                         lacking_sides(n, c.x, c.y), first, static_cast<std::uint32_t>(layer.size()),
                         first + static_cast<std::uint32_t>(row.first),
                         static_cast<std::uint32_t>(row.end - row.first)});

@@ -29,8 +29,8 @@ struct MeshGrid : BlockGrid<kBlockCells> {
 };
 
 // The grids of mesh_field and mesh_patch (synthesis/mesh/mesher.h), which say what they throw.
-MeshGrid grid_of_field(const Box& bounds, int resolution, MeshTile tile = {});
-MeshGrid grid_of_patch(const PatchPlace& place, double size, int resolution);
+MeshGrid field_grid(const Box& bounds, int resolution, MeshTile tile = {});
+MeshGrid patch_grid(const PatchPlace& place, double size, int resolution);
 
 // The longest side of a block's box in the body's frame, for obstacle_on_gpu(), length units.
 double block_side(const MeshGrid& grid);
@@ -49,7 +49,7 @@ struct BlockPlace {
   std::uint32_t lacking;  // bit s is set where no active block lies beyond side s
   // Rows of samples of a layer are numbered by z, then y, then x. Their numbers follow from the number of the
   // first block of the layer, the number of its blocks, and both for this block's row of blocks.
-  std::uint32_t first_of_layer, layer_blocks, first_of_row, blocks_of_row;
+  std::uint32_t layer_first, layer_blocks, row_first, row_blocks;
 
   // The number, among all rows of the batch, of the row of owned samples at local y, z of block number
   // `block`.
@@ -57,8 +57,8 @@ struct BlockPlace {
     constexpr std::uint32_t kRows = kBlockCells;
     const auto y_row = static_cast<std::uint32_t>(local_y - 1),
                z_row = static_cast<std::uint32_t>(local_z - 1);
-    return kRows * kRows * first_of_layer + z_row * kRows * layer_blocks +
-           kRows * (first_of_row - first_of_layer) + y_row * blocks_of_row + (block - first_of_row);
+    return kRows * kRows * layer_first + z_row * kRows * layer_blocks + kRows * (row_first - layer_first) +
+           y_row * row_blocks + (block - row_first);
   }
 };
 

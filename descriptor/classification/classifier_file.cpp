@@ -48,7 +48,7 @@ FloatJson to_json(const ShapeClassifier& classifier, const std::string& tool) {
   json["format"] = kClassifierFormat;
   json["version"] = kClassifierVersion;
   json["tool"] = tool;
-  json["features"] = {{"kind", name_of(f.kind)},
+  json["features"] = {{"kind", feature_name(f.kind)},
                       {"bins", f.bins},
                       {"eigenvalues", f.eigenvalues},
                       {"points", f.points},

@@ -27,10 +27,10 @@ void check(const LabelledFeatures& data, int folds) {
   }
 }
 
-LabelledFeatures without_fold(const LabelledFeatures& data, const std::vector<int>& fold_of, int fold) {
+LabelledFeatures without_fold(const LabelledFeatures& data, const std::vector<int>& sample_fold, int fold) {
   LabelledFeatures rest{data.classes, {}, {}};
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
-    if (fold_of[i] == fold) continue;
+    if (sample_fold[i] == fold) continue;
     rest.rows.push_back(data.rows[i]);
     rest.labels.push_back(data.labels[i]);
   }
@@ -39,8 +39,8 @@ LabelledFeatures without_fold(const LabelledFeatures& data, const std::vector<in
 
 double ratio(int part, int whole) { return whole > 0 ? static_cast<double>(part) / whole : 0; }
 
-ClassScore score_of(std::size_t c, const VoteRows& votes, std::span<const int> labels,
-                    const std::vector<std::vector<int>>& confusion) {
+ClassScore class_score(std::size_t c, const VoteRows& votes, std::span<const int> labels,
+                       const std::vector<std::vector<int>>& confusion) {
   ClassScore score;
   int called = 0;
   for (std::size_t other = 0; other < confusion.size(); ++other) {
@@ -62,7 +62,7 @@ ClassScore score_of(std::size_t c, const VoteRows& votes, std::span<const int> l
 }  // namespace
 
 std::vector<int> stratified_folds(std::span<const int> labels, int classes, int folds, std::uint64_t seed) {
-  std::vector<int> fold_of(labels.size(), 0);
+  std::vector<int> sample_fold(labels.size(), 0);
   int next = 0;  // counts on from class to class, so that no fold gets all remainders
   for (int c = 0; c < classes; ++c) {
     std::vector<std::size_t> members;
@@ -71,15 +71,15 @@ std::vector<int> stratified_folds(std::span<const int> labels, int classes, int 
     }
     CounterRandom random(seed, static_cast<std::uint64_t>(c));
     for (std::size_t i = members.size(); i > 1; --i) std::swap(members[i - 1], members[random.below(i)]);
-    for (const std::size_t i : members) fold_of[i] = next++ % folds;
+    for (const std::size_t i : members) sample_fold[i] = next++ % folds;
   }
-  return fold_of;
+  return sample_fold;
 }
 
 VoteRows cross_validate(const LabelledFeatures& data, const TrainingOptions& options, int folds,
                         std::uint64_t seed, const Progress& progress) {
   check(data, folds);
-  const std::vector<int> fold_of =
+  const std::vector<int> sample_fold =
       stratified_folds(data.labels, static_cast<int>(data.classes.size()), folds, seed);
   VoteRows votes(data.rows.size());
   std::mutex reporting;
@@ -88,9 +88,9 @@ VoteRows cross_validate(const LabelledFeatures& data, const TrainingOptions& opt
   parallel_for(0, folds, [&](std::int64_t fold) {
     if (stopped) return;
     const ShapeClassifier classifier =
-        train_classifier(without_fold(data, fold_of, static_cast<int>(fold)), {}, options);
+        train_classifier(without_fold(data, sample_fold, static_cast<int>(fold)), {}, options);
     for (std::size_t i = 0; i < data.rows.size(); ++i) {
-      if (fold_of[i] == fold) votes[i] = classifier.votes(data.rows[i]);
+      if (sample_fold[i] == fold) votes[i] = classifier.votes(data.rows[i]);
     }
     const std::lock_guard lock(reporting);
     ++done;
@@ -113,7 +113,7 @@ Evaluation evaluate(const VoteRows& votes, std::span<const int> labels, int clas
   }
   result.accuracy = ratio(right, result.shapes);
   for (std::size_t c = 0; c < size; ++c) {
-    result.classes.push_back(score_of(c, votes, labels, result.confusion));
+    result.classes.push_back(class_score(c, votes, labels, result.confusion));
     result.mean_average_precision += result.classes.back().ranking.average_precision / classes;
   }
   return result;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 bool hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-std::vector<fs::path> entries_of(const fs::path& folder) {
+std::vector<fs::path> list_entries(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     throw InputError(folder.string() + ": is no folder; give a folder of meshes");
@@ -34,14 +34,14 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
 }
 
 // The last part of the name of a folder, also for "classes/bird/" and ".".
-std::string name_of(const fs::path& folder) {
+std::string folder_name(const fs::path& folder) {
   fs::path full = fs::absolute(folder).lexically_normal();
   if (!full.has_filename()) full = full.parent_path();
   return full.filename().string();
 }
 
 std::vector<fs::path> folders_in(const fs::path& folder) {
-  std::vector<fs::path> folders = entries_of(folder);
+  std::vector<fs::path> folders = list_entries(folder);
   std::error_code unused;  // an entry without a status counts as no folder
   std::erase_if(folders, [&](const fs::path& p) { return !fs::is_directory(p, unused); });
   return folders;
@@ -64,7 +64,7 @@ void keep_filled(std::vector<std::string>& lines, std::vector<std::string>& kept
 }  // namespace
 
 std::vector<fs::path> meshes_in(const fs::path& folder) {
-  std::vector<fs::path> meshes = entries_of(folder);
+  std::vector<fs::path> meshes = list_entries(folder);
   std::error_code unused;
   std::erase_if(meshes,
                 [&](const fs::path& p) { return fs::is_directory(p, unused) || !has_readable_extension(p); });
@@ -72,7 +72,7 @@ std::vector<fs::path> meshes_in(const fs::path& folder) {
 }
 
 std::vector<fs::path> others_in(const fs::path& folder) {
-  std::vector<fs::path> others = entries_of(folder);
+  std::vector<fs::path> others = list_entries(folder);
   std::error_code unused;
   std::erase_if(others,
                 [&](const fs::path& p) { return fs::is_directory(p, unused) || has_readable_extension(p); });
@@ -87,7 +87,7 @@ LabelledFiles find_classes(std::span<const fs::path> folders) {
     if (meshes.empty()) {
       throw InputError(folder.string() + ": holds no meshes; give a folder of meshes for each class");
     }
-    auto& files = classes[name_of(folder)];
+    auto& files = classes[folder_name(folder)];
     files.insert(files.end(), meshes.begin(), meshes.end());
     const std::vector<fs::path> others = others_in(folder);
     skipped.insert(skipped.end(), others.begin(), others.end());
@@ -113,8 +113,8 @@ LabelledFiles find_classes(std::span<const fs::path> folders) {
   return result;
 }
 
-FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
-                               const ShapeReader& read, const Progress& progress) {
+FeatureTable read_features(std::span<const std::filesystem::path> files, const FeatureOptions& options,
+                           const ShapeReader& read, const Progress& progress) {
   check(options);
   FeatureTable table{FeatureRows(files.size()), {}, {}};
   std::vector<std::string> failures(files.size()), remarks(files.size());

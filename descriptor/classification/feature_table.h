@@ -43,8 +43,8 @@ using ShapeReader = std::function<TriangleMesh(const std::filesystem::path& file
 
 // Reads the files in parallel; the result does not depend on the number of threads. Throws InputError for
 // options out of range, and WorkError when progress asks to stop.
-FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
-                               const ShapeReader& read, const Progress& progress = {});
+FeatureTable read_features(std::span<const std::filesystem::path> files, const FeatureOptions& options,
+                           const ShapeReader& read, const Progress& progress = {});
 
 // The rows that are not empty, with their labels.
 LabelledFeatures labelled(const LabelledFiles& files, const FeatureTable& table);

@@ -14,7 +14,7 @@ struct Step {
 };
 
 // One step for each group of equal scores, the highest first.
-std::vector<Step> steps_of(std::span<const double> scores, const std::vector<bool>& relevant) {
+std::vector<Step> recall_steps(std::span<const double> scores, const std::vector<bool>& relevant) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
@@ -56,7 +56,7 @@ Answer ask(std::size_t query, const FeatureRows& rows, std::span<const int> labe
 }  // namespace
 
 PrecisionRecall precision_recall(std::span<const double> scores, const std::vector<bool>& relevant) {
-  const std::vector<Step> steps = steps_of(scores, relevant);
+  const std::vector<Step> steps = recall_steps(scores, relevant);
   PrecisionRecall result;
   double before = 0;
   for (const Step& step : steps) {

@@ -62,7 +62,7 @@ FeatureKind feature_kind_from_name(const std::string& name) {
   throw InputError("features: " + name + " is unknown; give wahl, ahd, d2 or shapedna");
 }
 
-std::string name_of(FeatureKind kind) {
+std::string feature_name(FeatureKind kind) {
   for (const auto& entry : kNames) {
     if (kind == entry.kind) return entry.name;
   }

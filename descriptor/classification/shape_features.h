@@ -29,7 +29,7 @@ struct FeatureOptions {
 
 // Names of the kinds as above. Throws InputError for an unknown name.
 FeatureKind feature_kind_from_name(const std::string& name);
-std::string name_of(FeatureKind kind);
+std::string feature_name(FeatureKind kind);
 
 // The usual options of the literature: five bins, or 64 for d2.
 FeatureOptions default_features(FeatureKind kind);

@@ -112,7 +112,7 @@ double taper(double t) {
 }
 
 // Weights of the points: the taper, and those of Cauchy for the residuals.
-std::vector<double> weights_of(const Patch& patch, const Unknowns& u, bool robust) {
+std::vector<double> point_weights(const Patch& patch, const Unknowns& u, bool robust) {
   std::vector<double> weights, residuals;
   for (const Vec3d& p : patch.points) weights.push_back(taper(u.distance(p)));
   if (!robust) return weights;
@@ -181,13 +181,13 @@ bool solve_at(const Patch& patch, const Unknowns& u, const std::vector<double>& 
 }
 
 bool solve_linear(const Patch& patch, Unknowns& u, bool robust) {
-  return solve_at<kLinear>(patch, u, weights_of(patch, u, robust), u.c);
+  return solve_at<kLinear>(patch, u, point_weights(patch, u, robust), u.c);
 }
 
 // Moves centre and radius by a step of Gauss and Newton, which is cut to a quarter of the radius.
 bool improve(const Patch& patch, Unknowns& u) {
   std::array<double, kAll> x{};
-  if (!solve_at<kAll>(patch, u, weights_of(patch, u, true), x)) return false;
+  if (!solve_at<kAll>(patch, u, point_weights(patch, u, true), x)) return false;
   const double most = 0.25 * u.radius, far = std::sqrt(x[8] * x[8] + x[9] * x[9]);
   const double cut = far > most ? most / far : 1.0;
   u.x += cut * x[8];
@@ -197,7 +197,7 @@ bool improve(const Patch& patch, Unknowns& u) {
 }
 
 // The sector of a point about the centre.
-std::size_t sector_of(const Vec3d& p, const Unknowns& u) {
+std::size_t sector_index(const Vec3d& p, const Unknowns& u) {
   const double x = p.x - u.x, y = p.y - u.y;
   const std::size_t eighth = std::fabs(y) > std::fabs(x) ? 1 : 0;
   return 4 * (y < 0.0 ? 1 : 0) + 2 * (x < 0.0 ? 1 : 0) + eighth;
@@ -215,8 +215,8 @@ void measure_sectors(const Patch& patch, const Unknowns& u, FitMeasures& m) {
   for (const Vec3d& p : patch.points) {
     const double t = u.distance(p), z = p.z - u.ground(p);
     if (t < 0.35) floor.add(z);
-    if (t > 0.85 && t < 1.15) crest[sector_of(p, u)].add(z);
-    if (t > 1.3 && t < kOuter) outside[sector_of(p, u)].add(z);
+    if (t > 0.85 && t < 1.15) crest[sector_index(p, u)].add(z);
+    if (t > 1.3 && t < kOuter) outside[sector_index(p, u)].add(z);
   }
   if (!(floor.count > 0.0)) return;
   double high = 0.0, crests = 0.0;
@@ -239,9 +239,9 @@ struct Residuals {
   double rms() const { return std::sqrt(with / std::max(count, 1.0)); }
 };
 
-FitMeasures measures_of(const Patch& patch, const Unknowns& u) {
+FitMeasures measure_fit(const Patch& patch, const Unknowns& u) {
   FitMeasures m;
-  const std::vector<double> weights = weights_of(patch, u, true);
+  const std::vector<double> weights = point_weights(patch, u, true);
   std::array<double, kQuadric> quadric{};
   if (!solve_at<kQuadric>(patch, u, weights, quadric)) return m;
   Unknowns plain = u;
@@ -311,7 +311,7 @@ std::optional<CraterFit> CraterFitter::fit(const SurfaceBlob& blob, double radiu
                           radius * u.radius,
                           radius * u.c[kDepth],
                           radius * u.c[kRim],
-                          measures_of(patch, u)};
+                          measure_fit(patch, u)};
       return is_on_surface(fit) ? std::optional(fit) : std::nullopt;
     }
     origin = center, normal = upright, radius *= u.radius;

@@ -21,27 +21,27 @@ constexpr std::int64_t kLeastPoints = 500, kGreatestPoints = 1'000'000;
 // completeness of walls, of crests, log(depth / diameter) and its square, rim over depth and its square,
 // log(saddle), bend and its square, log(residual within the rim), log(residual), log(diameter in edges).
 using Terms = std::array<double, 14>;
-Terms terms_of(const CraterFit& fit, double edge) {
+Terms make_terms(const CraterFit& fit, double edge) {
   const FitMeasures& m = fit.measures;
-  const auto log_of = [](double v, double low, double high) {
+  const auto clamped_log = [](double v, double low, double high) {
     return portable::log(std::clamp(v, low, high));
   };
-  const double depth = log_of(0.5 * fit.depth / fit.radius, 0.005, 0.5);
+  const double depth = clamped_log(0.5 * fit.depth / fit.radius, 0.005, 0.5);
   const double rim = std::clamp(fit.rim_height / fit.depth, -0.5, 1.5), bend = std::clamp(m.bend, -3.0, 3.0);
   return {1.0,
-          log_of(1.0 - m.explained, 0.01, 2.0),
+          clamped_log(1.0 - m.explained, 0.01, 2.0),
           m.walls,
           m.crests,
           depth,
           depth * depth,
           rim,
           rim * rim,
-          log_of(m.saddle, 0.02, 5.0),
+          clamped_log(m.saddle, 0.02, 5.0),
           bend,
           bend * bend,
-          log_of(m.inner, 0.01, 3.0),
-          log_of(m.residual, 0.01, 3.0),
-          log_of(2.0 * fit.radius / edge, 4.0, 100.0)};
+          clamped_log(m.inner, 0.01, 3.0),
+          clamped_log(m.residual, 0.01, 3.0),
+          clamped_log(2.0 * fit.radius / edge, 4.0, 100.0)};
 }
 
 // Weights by logistic regression on the bodies `fitted` of tests/benchmarks/found_craters.py.
@@ -52,14 +52,14 @@ constexpr Terms kCraterWeights{7.235,  -1.680, -4.748, 1.409,  1.022,  -0.389, 6
 constexpr Terms kBoulderWeights{-2.282, 0.043,  -1.850, 1.279,   -0.459, -0.076, 0.654,
                                 -1.056, -0.103, -4.804, -13.393, -0.956, -0.870, 0.333};
 
-double confidence_of(const CraterFit& fit, double edge, const Terms& weights) {
-  const Terms terms = terms_of(fit, edge);
+double crater_confidence(const CraterFit& fit, double edge, const Terms& weights) {
+  const Terms terms = make_terms(fit, edge);
   double odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) odds += weights[k] * terms[k];
   return 1.0 / (1.0 + portable::exp(-odds));
 }
 
-FoundFeature feature_of(const CraterFit& fit, BlobSign sign, double confidence) {
+FoundFeature make_feature(const CraterFit& fit, BlobSign sign, double confidence) {
   const bool crater = sign == BlobSign::hollow;
   FoundFeature f{sign,      {},  fit.center, fit.normal,          2.0 * fit.radius,
                  fit.depth, 0.0, 0.0,        fit.measures.crests, confidence};
@@ -91,8 +91,8 @@ std::vector<FoundFeature> surest(const std::vector<FoundFeature>& found) {
   return kept;
 }
 
-std::vector<FoundFeature> found_of(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
-                                   double least_confidence, const Progress& progress) {
+std::vector<FoundFeature> find_by_sign(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
+                                       double least_confidence, const Progress& progress) {
   const std::vector<SurfaceBlob> blobs = surface_blobs(even, step, sign, at_beginning(progress));
   const CraterFitter fitter(even, sign);
   const auto count = static_cast<std::int64_t>(kStarts.size() * blobs.size());
@@ -100,14 +100,14 @@ std::vector<FoundFeature> found_of(const EvenedSurface& even, const SmoothingSte
   reported_parallel_for({0, count, count}, progress, "fits of craters", [&](std::int64_t index) {
     const auto i = static_cast<std::size_t>(index);
     const SurfaceBlob& blob = blobs[i / kStarts.size()];
-    fits[i] = fitter.fit(blob, kStarts[i % kStarts.size()] * blob.scale / kBlobOfRadius);
+    fits[i] = fitter.fit(blob, kStarts[i % kStarts.size()] * blob.scale / kBlobPerRadius);
   });
   std::vector<FoundFeature> found;
   for (const std::optional<CraterFit>& fit : fits) {
     if (!fit || 2.0 * fit->radius < kLeastFound * even.edge) continue;
     const double confidence =
-        confidence_of(*fit, even.edge, sign == BlobSign::hollow ? kCraterWeights : kBoulderWeights);
-    if (confidence >= least_confidence) found.push_back(feature_of(*fit, sign, confidence));
+        crater_confidence(*fit, even.edge, sign == BlobSign::hollow ? kCraterWeights : kBoulderWeights);
+    if (confidence >= least_confidence) found.push_back(make_feature(*fit, sign, confidence));
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const FoundFeature& a, const FoundFeature& b) { return a.confidence > b.confidence; });
@@ -133,10 +133,10 @@ FoundFeatures find_features(const TriangleMesh& mesh, const FeatureOptions& opti
   const SmoothingStep step(even);
   result.edge = even.edge;
   result.area = even.area;
-  result.features = found_of(even, step, BlobSign::hollow, options.least_confidence, progress);
+  result.features = find_by_sign(even, step, BlobSign::hollow, options.least_confidence, progress);
   if (!options.boulders) return result;
   const std::vector<FoundFeature> boulders =
-      found_of(even, step, BlobSign::bump, options.least_confidence, progress);
+      find_by_sign(even, step, BlobSign::bump, options.least_confidence, progress);
   result.features.insert(result.features.end(), boulders.begin(), boulders.end());
   sort_by_confidence(result.features);
   return result;

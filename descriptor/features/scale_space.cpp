@@ -12,10 +12,10 @@ namespace astrolith {
 namespace {
 
 constexpr double kLargestScale = 0.3;  // radii of the sphere of equal area
-constexpr double kFaintest = 0.002, kApart = 1.5, kOfNeighbours = 0.9;
+constexpr double kFaintest = 0.002, kApart = 1.5, kNeighbourShare = 0.9;
 
 // The numbers of steps whose deviations lie a factor of 1.25 apart, with one more than the last scale.
-std::vector<int> steps_of_scales(double body_radius) {
+std::vector<int> scale_steps(double body_radius) {
   std::vector<int> steps{1};
   while (std::sqrt(steps.back()) * kStepDeviation <= kLargestScale * body_radius || steps.size() < 4) {
     steps.push_back(static_cast<int>(std::ceil(1.5625 * steps.back())));
@@ -42,10 +42,10 @@ Scale scale_between(const std::vector<Vec3d>& fine, const std::vector<Vec3d>& co
   return scale;
 }
 
-std::vector<Scale> scales_of(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
-                             const Progress& progress) {
+std::vector<Scale> find_scales(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
+                               const Progress& progress) {
   const double body_radius = std::sqrt(even.area / (4.0 * std::numbers::pi)) / even.edge;
-  const std::vector<int> steps = steps_of_scales(body_radius);
+  const std::vector<int> steps = scale_steps(body_radius);
   std::vector<Scale> scales;
   std::vector<Vec3d> surface = even.means, normals = even.normals, finer = surface;
   int done = 1;
@@ -75,7 +75,7 @@ bool is_greatest(const EvenedSurface& even, const PointTree& tree, const Scale& 
 
 std::vector<SurfaceBlob> surface_blobs(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
                                        const Progress& progress) {
-  const std::vector<Scale> scales = scales_of(even, step, sign, progress);
+  const std::vector<Scale> scales = find_scales(even, step, sign, progress);
   const PointTree tree(even.points);
   std::vector<SurfaceBlob> blobs;
   for (std::size_t k = 0; k < scales.size(); ++k) {
@@ -87,8 +87,8 @@ std::vector<SurfaceBlob> surface_blobs(const EvenedSurface& even, const Smoothin
       if (own < kFaintest) return;
       for (const SmoothingShare& near : step.around(i))
         if (scale.response[near.point] > own) return;
-      if (k > 0 && own < kOfNeighbours * scales[k - 1].response[i]) return;
-      if (k + 1 < scales.size() && own < kOfNeighbours * scales[k + 1].response[i]) return;
+      if (k > 0 && own < kNeighbourShare * scales[k - 1].response[i]) return;
+      if (k + 1 < scales.size() && own < kNeighbourShare * scales[k + 1].response[i]) return;
       blob[i] = is_greatest(even, tree, scale, i) ? 1 : 0;
     });
     for (std::size_t i = 0; i < blob.size(); ++i) {

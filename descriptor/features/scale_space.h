@@ -29,6 +29,6 @@ enum class BlobSign { hollow, bump };
 std::vector<SurfaceBlob> surface_blobs(const EvenedSurface& even, const SmoothingStep& step, BlobSign sign,
                                        const Progress& progress = {});
 
-inline constexpr double kBlobOfRadius = 0.3;  // s over the radius of the bowl that answers most
+inline constexpr double kBlobPerRadius = 0.3;  // s over the radius of the bowl that answers most
 
 }  // namespace astrolith

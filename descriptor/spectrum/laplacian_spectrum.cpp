@@ -203,8 +203,8 @@ std::vector<double> lowest_eigenvalues(const SparseMatrix& matrix, int count) {
 }
 
 // `covers` is how often the triangles cover the surface.
-LaplacianSpectrum spectrum_of(std::span<const Vec3d> points, std::span<const Triangle> triangles,
-                              double covers, int count) {
+LaplacianSpectrum solve_spectrum(std::span<const Vec3d> points, std::span<const Triangle> triangles,
+                                 double covers, int count) {
   Assembly assembly(points);
   for (const Triangle& t : triangles) assembly.add(t);
   const Operator op = assembly.finish();
@@ -254,7 +254,7 @@ LaplacianSpectrum laplacian_spectrum(const TriangleMesh& mesh, int count) {
     throw InputError("Laplacian spectrum: " + std::to_string(topology.non_manifold_edges) +
                      " edges join three or more triangles; give a mesh that is a surface everywhere");
   }
-  return spectrum_of(mesh.vertices, mesh.triangles, 1, count);
+  return solve_spectrum(mesh.vertices, mesh.triangles, 1, count);
 }
 
 LaplacianSpectrum laplacian_spectrum(std::span<const Vec3d> points, std::span<const Vec3d> normals,
@@ -265,7 +265,7 @@ LaplacianSpectrum laplacian_spectrum(std::span<const Vec3d> points, std::span<co
                      " points are too few; give at least 16");
   }
   const int neighbours = std::min(kCloudNeighbours, static_cast<int>(points.size()) - 1);
-  return spectrum_of(points, point_cloud_triangles(points, normals, neighbours), 3, count);
+  return solve_spectrum(points, point_cloud_triangles(points, normals, neighbours), 3, count);
 }
 
 }  // namespace astrolith

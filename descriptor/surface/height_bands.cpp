@@ -13,7 +13,7 @@ namespace astrolith {
 namespace {
 
 // Steps that make each of kBandScales.
-constexpr std::array<int, kBandScales.size()> kStepsOfScale{1, 4, 16, 64, 256};
+constexpr std::array<int, kBandScales.size()> kScaleSteps{1, 4, 16, 64, 256};
 // What the scales need of the smoothed surface: S_s of each, and the normals smoothed by G_s.
 struct Smoothings {
   std::array<std::vector<Vec3d>, kBandScales.size()> surfaces, normals;
@@ -30,14 +30,14 @@ Smoothings smoothings(const EvenedSurface& even, const SmoothingStep& step, std:
   Smoothings result;
   // The first step leads from the mesh to the points.
   std::vector<Vec3d> surface = even.means, normals = even.normals;
-  const int last = 3 * kStepsOfScale[scales - 1];
+  const int last = 3 * kScaleSteps[scales - 1];
   for (int done = 1; done <= last; ++done) {
     if (done > 1) surface = step(surface);
     if (done > 1 && 3 * done <= last) normals = step(normals);
     for (std::size_t s = 0; s < scales; ++s) {
-      if (done == kStepsOfScale[s]) result.normals[s] = normals;
+      if (done == kScaleSteps[s]) result.normals[s] = normals;
       for (int power = 1; power <= 3; ++power) {
-        if (done == power * kStepsOfScale[s]) {
+        if (done == power * kScaleSteps[s]) {
           add_scaled(kFactors[static_cast<std::size_t>(power - 1)], surface, result.surfaces[s]);
         }
       }
@@ -57,7 +57,7 @@ void subtract_mean(std::vector<double>& values) {
 }
 
 // The heights of the band from one scale to the next, in edges.
-std::vector<double> heights_of_band(const Smoothings& smooth, std::size_t band, double edge) {
+std::vector<double> band_heights(const Smoothings& smooth, std::size_t band, double edge) {
   std::vector<double> heights;
   heights.reserve(smooth.surfaces[band].size());
   for (std::size_t i = 0; i < smooth.surfaces[band].size(); ++i) {
@@ -68,11 +68,11 @@ std::vector<double> heights_of_band(const Smoothings& smooth, std::size_t band, 
   return heights;
 }
 
-std::optional<double> coupling_of(const std::vector<double>& a, const std::vector<double>& b,
-                                  const SmoothingStep& step) {
+std::optional<double> band_coupling(const std::vector<double>& a, const std::vector<double>& b,
+                                    const SmoothingStep& step) {
   std::vector<double> envelope, size;
   for (const double v : a) envelope.push_back(v * v);
-  for (int k = 0; k < kStepsOfScale[3]; ++k) envelope = step(envelope);
+  for (int k = 0; k < kScaleSteps[3]; ++k) envelope = step(envelope);
   for (double& v : envelope) v = std::sqrt(v);
   for (const double v : b) size.push_back(std::fabs(v));
   subtract_mean(envelope);
@@ -87,18 +87,18 @@ std::optional<double> coupling_of(const std::vector<double>& a, const std::vecto
 HeightBands height_bands(const EvenedSurface& even, const Progress& progress) {
   const double body_radius = std::sqrt(even.area / (4.0 * std::numbers::pi)) / even.edge;
   std::size_t scales = 1;
-  while (scales < kBandScales.size() && kBandScales[scales] <= kMostOfBody * body_radius) ++scales;
+  while (scales < kBandScales.size() && kBandScales[scales] <= kMostBodyShare * body_radius) ++scales;
   HeightBands result;
   if (scales < 2) return result;
   const SmoothingStep step(even);
   const Smoothings smooth = smoothings(even, step, scales, progress);
   std::vector<std::vector<double>> heights;
   for (std::size_t band = 0; band + 1 < scales; ++band) {
-    heights.push_back(heights_of_band(smooth, band, even.edge));
+    heights.push_back(band_heights(smooth, band, even.edge));
     result.bands.push_back(
         {kBandScales[band], kBandScales[band + 1], std::sqrt(mean_product(heights.back(), heights.back()))});
   }
-  if (heights.size() == kBandScales.size() - 1) result.coupling = coupling_of(heights[2], heights[3], step);
+  if (heights.size() == kBandScales.size() - 1) result.coupling = band_coupling(heights[2], heights[3], step);
   return result;
 }
 

@@ -29,8 +29,8 @@ struct HeightBands {
 // band from s to t are h = n . (S_s x - S_t x). n is the surface's normal, smoothed by G_t. On a plane S_s
 // keeps the share 1 - (1 - g)^3 of a wave, with g = exp(-(2 pi s / wavelength)^2 / 2): the band from s to 2 s
 // keeps most, .72, of waves of 4.9 s. A sphere of radius R shrinks by about R (s / R)^6 only, so that little
-// of the body's shape counts as relief. Where t is above kMostOfBody of the radius of a sphere of equal area,
-// the shape would count, and the band is left out.
+// of the body's shape counts as relief. Where t is above kMostBodyShare of the radius of a sphere of equal
+// area, the shape would count, and the band is left out.
 //
 // The coupling is the correlation over the surface of sqrt(G_s a^2) and |b|, of the bands a from 3.2 to 6.4
 // and b from 6.4 to 12.8 edges, with s = 6.4 edges.
@@ -41,6 +41,6 @@ struct HeightBands {
 // inwards. Throws WorkError when progress asks to stop.
 HeightBands height_bands(const EvenedSurface& even, const Progress& progress = {});
 
-inline constexpr double kMostOfBody = 0.45;
+inline constexpr double kMostBodyShare = 0.45;
 
 }  // namespace astrolith

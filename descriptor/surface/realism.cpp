@@ -23,7 +23,7 @@ struct Summary {
   double middle, spread;
 };
 
-Summary summary_of(const LocalStatistic& statistic) {
+Summary summarize(const LocalStatistic& statistic) {
   std::vector<double> sorted = statistic.values;
   std::sort(sorted.begin(), sorted.end());
   const double spread = sorted_quantile(sorted, 0.75) - sorted_quantile(sorted, 0.25);
@@ -57,8 +57,8 @@ std::vector<double> flat_part(std::vector<double> bends, double limit) {
 // Other triangles of one surface leave up to so much more of it flat, which is no difference of the surfaces.
 constexpr double kFlatTolerance = 0.05;
 
-std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, const LocalStatistic& b,
-                                                       const Regions& regions_a, const Regions& regions_b) {
+std::function<double(const RegionLabels&)> make_distance(const LocalStatistic& a, const LocalStatistic& b,
+                                                         const Regions& regions_a, const Regions& regions_b) {
   if (!quantity_traits(a.quantity).only_flat) {
     return KolmogorovSmirnov({a.values, regions_a.region_index}, {b.values, regions_b.region_index});
   }
@@ -70,8 +70,8 @@ std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, 
   return [distance](const RegionLabels& first) { return std::max(0.0, distance(first) - kFlatTolerance); };
 }
 
-StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& surface_a,
-                      const SurfaceStatistics& surface_b) {
+StatisticTest make_test(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& surface_a,
+                        const SurfaceStatistics& surface_b) {
   StatisticTest test;
   StatisticComparison& c = test.comparison;
   c.quantity = a.quantity;
@@ -80,13 +80,13 @@ StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const Su
   c.counts_in_p = regions_hold(a.radius, body_radius);
   c.counts_in_distance =
       quantity_traits(a.quantity).counts_in_distance && body_holds_discs(a.radius, body_radius);
-  const Summary sa = summary_of(a), sb = summary_of(b);
+  const Summary sa = summarize(a), sb = summarize(b);
   c.middle_a = sa.middle, c.middle_b = sb.middle, c.spread_a = sa.spread, c.spread_b = sb.spread;
-  test.distance = distance_of(a, b, surface_a.regions, surface_b.regions);
+  test.distance = make_distance(a, b, surface_a.regions, surface_b.regions);
   return test;
 }
 
-StatisticTest test_of(const Regions& a, const Regions& b, std::size_t lag) {
+StatisticTest make_test(const Regions& a, const Regions& b, std::size_t lag) {
   StatisticTest test;
   StatisticComparison& c = test.comparison;
   c.correlation = true;
@@ -104,10 +104,10 @@ std::vector<StatisticTest> all_tests(const SurfaceStatistics& a, const SurfaceSt
   std::vector<StatisticTest> tests;
   for (const LocalStatistic& statistic_a : a.local) {
     const LocalStatistic* statistic_b = b.find(statistic_a.quantity, statistic_a.radius);
-    if (statistic_b != nullptr) tests.push_back(test_of(statistic_a, *statistic_b, a, b));
+    if (statistic_b != nullptr) tests.push_back(make_test(statistic_a, *statistic_b, a, b));
   }
   for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
-    tests.push_back(test_of(a.regions, b.regions, lag));
+    tests.push_back(make_test(a.regions, b.regions, lag));
   }
   for (StatisticTest& test : tests) test.comparison.distance = test.distance(own_regions());
   return tests;
@@ -219,8 +219,8 @@ double KolmogorovSmirnov::operator()(const RegionLabels& first) const {
   std::int64_t difference = 0, largest = 0;
   for (std::size_t i = 0; i < sorted_.size(); ++i) {
     difference += first[sorted_[i].region] ? others : -firsts;
-    const bool last_of_equals = i + 1 == sorted_.size() || sorted_[i].value < sorted_[i + 1].value;
-    if (last_of_equals) largest = std::max(largest, std::abs(difference));
+    const bool is_last_equal = i + 1 == sorted_.size() || sorted_[i].value < sorted_[i + 1].value;
+    if (is_last_equal) largest = std::max(largest, std::abs(difference));
   }
   return static_cast<double>(largest) / (static_cast<double>(firsts) * static_cast<double>(others));
 }
@@ -298,7 +298,7 @@ RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics
 
 RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts) {
   RealismVerdict result = verdicts.front();
-  const auto median_of = [&](const auto& figure) {
+  const auto median_figure = [&](const auto& figure) {
     std::vector<double> values;
     for (const RealismVerdict& verdict : verdicts) values.push_back(figure(verdict));
     return median(values);
@@ -308,7 +308,7 @@ RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts) {
          {&StatisticComparison::distance, &StatisticComparison::p, &StatisticComparison::middle_b,
           &StatisticComparison::spread_b}) {
       result.statistics[s].*figure =
-          median_of([&](const RealismVerdict& verdict) { return verdict.statistics[s].*figure; });
+          median_figure([&](const RealismVerdict& verdict) { return verdict.statistics[s].*figure; });
     }
   }
   // A surface of a little less area may lack the largest band.
@@ -317,14 +317,14 @@ RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts) {
     if (!v.coupling_ratio) result.coupling_ratio.reset();
   }
   for (std::size_t k = 0; k < result.bands.size(); ++k) {
-    result.bands[k].ratio = median_of([&](const RealismVerdict& v) { return v.bands[k].ratio; });
+    result.bands[k].ratio = median_figure([&](const RealismVerdict& v) { return v.bands[k].ratio; });
   }
   if (result.coupling_ratio) {
-    result.coupling_ratio = median_of([](const RealismVerdict& v) { return *v.coupling_ratio; });
+    result.coupling_ratio = median_figure([](const RealismVerdict& v) { return *v.coupling_ratio; });
   }
-  result.p = median_of([](const RealismVerdict& v) { return v.p; });
-  result.largest_distance = median_of([](const RealismVerdict& v) { return v.largest_distance; });
-  result.variance_ratio = median_of([](const RealismVerdict& v) { return v.variance_ratio; });
+  result.p = median_figure([](const RealismVerdict& v) { return v.p; });
+  result.largest_distance = median_figure([](const RealismVerdict& v) { return v.largest_distance; });
+  result.variance_ratio = median_figure([](const RealismVerdict& v) { return v.variance_ratio; });
   decide(result);
   return result;
 }

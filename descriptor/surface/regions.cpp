@@ -27,7 +27,7 @@ double mean_square(std::span<const double> values) {
 }
 
 // The pairs that place i forms with the later places of its region.
-LagSums pairs_of(std::size_t i, std::span<const std::uint8_t> regions, std::span<const Vec3d> places,
+LagSums lag_sums(std::size_t i, std::span<const std::uint8_t> regions, std::span<const Vec3d> places,
                  std::span<const double> values, double edge) {
   LagSums sums{};
   for (std::size_t j = i + 1; j < places.size(); ++j) {
@@ -43,7 +43,7 @@ LagSums pairs_of(std::size_t i, std::span<const std::uint8_t> regions, std::span
   return sums;
 }
 
-double variance_of_means(std::span<const std::uint8_t> region_index, std::span<const double> values) {
+double mean_variance(std::span<const std::uint8_t> region_index, std::span<const double> values) {
   std::array<double, kRegions> sums{}, counts{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     sums[region_index[i]] += values[i];
@@ -60,9 +60,9 @@ using Centers = std::array<Vec3d, kRegions>;
 
 // Numbers the groups of the regions from `first` on; there are `groups` of them, a power of 2.
 void halve(std::span<std::uint8_t> regions, const Centers& centers, int groups, int first,
-           RegionGroups& group_of) {
+           RegionGroups& region_group) {
   if (groups == 1) {
-    for (const std::uint8_t r : regions) group_of[r] = static_cast<std::uint8_t>(first);
+    for (const std::uint8_t r : regions) region_group[r] = static_cast<std::uint8_t>(first);
     return;
   }
   Box box;
@@ -71,8 +71,8 @@ void halve(std::span<std::uint8_t> regions, const Centers& centers, int groups, 
   std::stable_sort(regions.begin(), regions.end(),
                    [&](std::uint8_t a, std::uint8_t b) { return centers[a].*axis < centers[b].*axis; });
   const std::size_t half = regions.size() / 2;
-  halve(regions.first(half), centers, groups / 2, first, group_of);
-  halve(regions.subspan(half), centers, groups / 2, first + groups / 2, group_of);
+  halve(regions.first(half), centers, groups / 2, first, region_group);
+  halve(regions.subspan(half), centers, groups / 2, first + groups / 2, region_group);
 }
 
 }  // namespace
@@ -87,10 +87,10 @@ RegionGroups region_groups(std::span<const std::uint8_t> region_index, std::span
   for (std::size_t r = 0; r < kRegions; ++r) {
     if (counts[r] > 0.0) centers[r] *= 1.0 / counts[r];
   }
-  RegionGroups regions{}, group_of{};
+  RegionGroups regions{}, region_group{};
   std::iota(regions.begin(), regions.end(), std::uint8_t{0});
-  halve(regions, centers, kRegionGroups, 0, group_of);
-  return group_of;
+  halve(regions, centers, kRegionGroups, 0, region_group);
+  return region_group;
 }
 
 double Regions::correlation(std::size_t lag) const {
@@ -102,8 +102,8 @@ double Regions::correlation(std::size_t lag) const {
   return all.pairs > 0.0 && variance > 0.0 ? all.products / all.pairs / variance : 0.0;
 }
 
-std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<const Vec3d> places,
-                                           std::uint64_t seed) {
+std::vector<std::uint8_t> find_regions(const TriangleMesh& mesh, std::span<const Vec3d> places,
+                                       std::uint64_t seed) {
   const std::vector<Vec3d> centers = sample_poisson_disk(mesh, kRegions, seed).points;
   std::vector<std::uint8_t> regions;
   regions.reserve(places.size());
@@ -129,7 +129,7 @@ Regions regional_sums(std::vector<std::uint8_t> region_index, std::span<const Ve
       0, static_cast<std::int64_t>(places.size()),
       [&](std::int64_t i) {
         const auto k = static_cast<std::size_t>(i);
-        sums[k] = pairs_of(k, region_index, places, from_mean, edge);
+        sums[k] = lag_sums(k, region_index, places, from_mean, edge);
       },
       16);
   Regions regions;
@@ -141,7 +141,7 @@ Regions regional_sums(std::vector<std::uint8_t> region_index, std::span<const Ve
     }
   }
   regions.variance = mean_square(from_mean);
-  regions.between = variance_of_means(region_index, from_mean);
+  regions.between = mean_variance(region_index, from_mean);
   regions.groups = region_groups(region_index, places);
   regions.region_index = std::move(region_index);
   return regions;

@@ -41,8 +41,8 @@ struct Regions {
 };
 
 // Parts the places among the kRegions points of a Poisson disk on the mesh, each to the nearest.
-std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<const Vec3d> places,
-                                           std::uint64_t seed);
+std::vector<std::uint8_t> find_regions(const TriangleMesh& mesh, std::span<const Vec3d> places,
+                                       std::uint64_t seed);
 
 // The group of each region. The regions are halved three times along the longest axis of their centres, which
 // are the means of their places.

@@ -17,7 +17,7 @@ struct Neighbour {
   double x, y, squared, weight;
 };
 
-std::vector<Neighbour> neighbours_of(const EvenedSurface& even, const PointTree& tree, std::size_t i) {
+std::vector<Neighbour> find_neighbours(const EvenedSurface& even, const PointTree& tree, std::size_t i) {
   const double reach = kStepReach * even.edge;
   const Tangents<double> along = crossed_tangents(even.normals[i]);
   std::vector<Neighbour> neighbours;
@@ -47,7 +47,7 @@ void center(std::vector<Neighbour>& neighbours) {
 // Shares of the neighbours whose mean is the point itself, and whose mean square distance is the nominal one;
 // the rest is the point's own. Uneven points then neither drift nor blur more at one place than at another.
 std::vector<SmoothingShare> shares_around(const EvenedSurface& even, const PointTree& tree, std::size_t i) {
-  std::vector<Neighbour> neighbours = neighbours_of(even, tree, i);
+  std::vector<Neighbour> neighbours = find_neighbours(even, tree, i);
   center(neighbours);
   double squares = 0.0, weights = 0.0;
   for (const Neighbour& n : neighbours) {

@@ -65,7 +65,7 @@ double log_roughness(const SurfaceDisc& disc) {
 }
 
 // The rms angle between the surface's normals and the quadric's, by chords: degrees.
-double spread_of_normals(const SurfaceDisc& disc) {
+double normal_spread(const SurfaceDisc& disc) {
   double squares = 0.0;
   for (std::size_t k = 0; k < disc.heights.size(); ++k) {
     const Vec3d& p = disc.heights[k];
@@ -124,7 +124,7 @@ constexpr SurfaceQuantityTraits kQuantities[] = {
      .by_scale = true},
     {.name = "normals",
      .heading = "spread of normals",
-     .disc_value = spread_of_normals,
+     .disc_value = normal_spread,
      .words = normals_words,
      .by_scale = true,
      .follows = SurfaceQuantity::roughness},

@@ -81,6 +81,6 @@ std::span<const SurfaceQuantityTraits> surface_quantities();  // in the order of
 inline const SurfaceQuantityTraits& quantity_traits(SurfaceQuantity quantity) {
   return surface_quantities()[static_cast<std::size_t>(quantity)];
 }
-inline const char* name_of(SurfaceQuantity quantity) { return quantity_traits(quantity).name; }
+inline const char* quantity_name(SurfaceQuantity quantity) { return quantity_traits(quantity).name; }
 
 }  // namespace astrolith

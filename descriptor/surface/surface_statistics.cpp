@@ -96,7 +96,7 @@ class PlaceMeasurement {
     return around;
   }
 
-  SurfaceDisc disc_of(std::size_t place, double length, const Neighbours& around) const {
+  SurfaceDisc make_disc(std::size_t place, double length, const Neighbours& around) const {
     Vec3d sum{};
     for (const auto& [j, squared] : around) {
       if (squared <= length * length) sum += even_.normals[j];
@@ -116,7 +116,7 @@ class PlaceMeasurement {
   }
 
   bool measure(std::size_t place, double radius, const Neighbours& around, PlaceValues& result) const {
-    SurfaceDisc disc = disc_of(place, radius * even_.edge, around);
+    SurfaceDisc disc = make_disc(place, radius * even_.edge, around);
     if (disc.heights.size() < kFewestNeighbours) return false;
     const std::optional<LocalQuadric> quadric = fit_quadric(disc.heights);
     if (!quadric) return false;
@@ -163,7 +163,7 @@ std::vector<double> suitable_radii(double body_radius, std::vector<std::string>&
 }
 
 // The largest radius that the regions hold, or the smallest of all.
-double radius_of_lags(std::span<const double> radii, double body_radius) {
+double choose_lag_radius(std::span<const double> radii, double body_radius) {
   double found = radii.front();
   for (const double radius : radii) {
     if (regions_hold(radius, body_radius)) found = radius;
@@ -264,7 +264,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
   result.edge = even.edge;
   result.body_radius = std::sqrt(even.area / (4.0 * std::numbers::pi)) / even.edge;
   const std::vector<double> radii = suitable_radii(result.body_radius, result.remarks);
-  const double lag_radius = radius_of_lags(radii, result.body_radius);
+  const double lag_radius = choose_lag_radius(radii, result.body_radius);
   std::vector<PlaceValues> places =
       measured_places(even, radii, lag_radius, std::min(options.places, result.points), progress);
 
@@ -285,7 +285,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
   result.heights = height_bands(even, at_beginning(progress));
   result.lags = roughness_at_lags(places, lag_radius, even.edge);
   result.local = columns(places, radii);
-  result.regions = regional_sums(region_of_places(mesh, result.places, options.seed + 2), result.places,
+  result.regions = regional_sums(find_regions(mesh, result.places, options.seed + 2), result.places,
                                  result.local.front().values, even.edge);
   result.local.push_back(std::move(bends));
   add_slopes(mesh, normals, options, result);

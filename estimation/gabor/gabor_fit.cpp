@@ -90,7 +90,7 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   BasisPursuitOptions pursuit;
   pursuit.relative_gap = options.relative_gap;
   fit.pursuit = solve_working_set(problem, pursuit, progress);
-  std::vector<SpectralLobe> lobes = lobes_of(dictionary, fit.pursuit.x);
+  std::vector<SpectralLobe> lobes = active_lobes(dictionary, fit.pursuit.x);
   for (SpectralLobe& lobe : lobes) lobe.height *= unit;
   fit.pursuit.x = {};
   return lobes;
@@ -199,7 +199,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
         name + ": no lobe fits its spectrum; try a smaller penalty, or scale patterns of two pixels up");
   }
   fit.lobes = to_layer_lobes(lobes, fit);
-  fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);
+  fit.fitted = layer_spectrum(fit.lobes, fit.periodogram.width, fit.periodogram.height);
   fit.spectrum_distance = optimal_transport_distance(fit.fitted, fit.estimate.spectrum);
   fit.quality = judge_lobes(fit.fitted, fit.periodogram, fit.estimate.standard_error);
   return fit;

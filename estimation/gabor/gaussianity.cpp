@@ -66,7 +66,7 @@ struct Pieces {
   int count() const { return columns * rows; }
 };
 
-GreyImage piece_of(const GreyImage& image, const Pieces& pieces, int t) {
+GreyImage cut_piece(const GreyImage& image, const Pieces& pieces, int t) {
   const auto start = [](int extent, int i, int n) {
     return static_cast<int>(static_cast<std::int64_t>(extent) * i / n);
   };
@@ -192,12 +192,12 @@ class Surrogates {
     std::vector<std::size_t> turns;
     MeasureSums sums;
   };
-  Surrogate begin(std::uint64_t index) const { return {CounterRandom(seed_, index), turns_of(index), {}}; }
+  Surrogate begin(std::uint64_t index) const { return {CounterRandom(seed_, index), draw_turns(index), {}}; }
   void add_piece(std::size_t t, Surrogate& s) const { s.sums.add(piece(t, s.turns, s.random)); }
 
  private:
   // By how many pieces the moduli of each frequency are turned. A lone piece keeps its own.
-  std::vector<std::size_t> turns_of(std::uint64_t index) const {
+  std::vector<std::size_t> draw_turns(std::uint64_t index) const {
     std::vector<std::size_t> turns(fourier_.half_size(), 0);
     constexpr std::uint64_t kTurns = 0x7475726eu;  // a stream apart from that of the phases
     CounterRandom random(seed_ ^ kTurns, index);
@@ -273,7 +273,7 @@ bool within(const Gaussianity& g, const Limits& limits) {
          g.edge_kurtosis <= limits.edges && g.variance_spread <= limits.spread;
 }
 
-Likeness likeness_of(const Gaussianity& g) {
+Likeness judge_likeness(const Gaussianity& g) {
   if (!within(g, kRoughly)) return Likeness::kOutside;
   if (g.p_value > 0.05) return Likeness::kGaussian;
   return within(g, kClose) ? Likeness::kClose : Likeness::kRoughly;
@@ -345,7 +345,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   MeasureSums photo;
   for (int t = 0; t < pieces.count(); ++t) {
     if (!report(progress, 0.0, kComparing)) throw WorkError("gaussianity: stopped");
-    const GreyImage piece = decompose_periodic(piece_of(image, pieces, t)).periodic;
+    const GreyImage piece = decompose_periodic(cut_piece(image, pieces, t)).periodic;
     photo.add(piece);
     noise.add_piece(piece);
   }
@@ -367,7 +367,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   const auto as_unusual =
       std::count_if(unusual.begin(), unusual.end(), [&](double u) { return u >= unusual[0]; });
   result.p_value = static_cast<double>(as_unusual) / (surrogates + 1);
-  result.likeness = likeness_of(result);
+  result.likeness = judge_likeness(result);
   result.sentence = sentence_for(result);
   if (std::min(image.width, image.height) < kSmallSide) {
     result.sentence +=

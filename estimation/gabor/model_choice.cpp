@@ -56,7 +56,7 @@ bool has_texture(const GreyImage& square, double photo_variance) {
 }
 
 // The squares in the middles of the quarters that have texture.
-std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
+std::vector<GreyImage> quarter_squares(const GreyImage& photo, int side) {
   std::vector<GreyImage> squares;
   const double variance = sample_variance(photo.values);
   for (const int row : {1, 3}) {
@@ -83,8 +83,9 @@ GreyImage lobe_texture(const GaborFit& fit, const GreyImage& square, std::uint64
   return texture;
 }
 
-std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, const std::string& name,
-                                   const GaborFitOptions& options, std::uint64_t seed, const Progress& heed) {
+std::vector<GreyImage> make_textures(TextureModel model, const GreyImage& square, const std::string& name,
+                                     const GaborFitOptions& options, std::uint64_t seed,
+                                     const Progress& heed) {
   std::vector<GreyImage> textures;
   if (model == TextureModel::kGabor) {
     const GaborFit fit = fit_gabor_lobes(square, name, options, heed);
@@ -100,7 +101,7 @@ std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, 
   return textures;
 }
 
-std::vector<TextureDistributions> distributions_of(const std::vector<GreyImage>& images, int side) {
+std::vector<TextureDistributions> find_distributions(const std::vector<GreyImage>& images, int side) {
   std::vector<TextureDistributions> distributions;
   for (const GreyImage& image : images) distributions.emplace_back(image, side);
   return distributions;
@@ -130,7 +131,7 @@ double standard_error(const std::vector<double>& values) {
 
 using Scores = std::array<std::vector<TextureScore>, 3>;  // of each model, by the seen square
 
-HeldOutScore summary_of(const std::vector<TextureScore>& scores) {
+HeldOutScore summarize(const std::vector<TextureScore>& scores) {
   std::vector<double> values, filters, sums;
   for (const TextureScore& s : scores) {
     values.push_back(s.values);
@@ -141,16 +142,16 @@ HeldOutScore summary_of(const std::vector<TextureScore>& scores) {
 }
 
 // How far the squares are from each other: a texture of one square rarely comes nearer to the others.
-HeldOutScore score_of_squares(std::span<const TextureDistributions> squares) {
+HeldOutScore score_squares(std::span<const TextureDistributions> squares) {
   std::vector<TextureScore> scores;
   for (std::size_t k = 0; k < squares.size(); ++k)
     scores.push_back(held_out_score(squares.subspan(k, 1), squares, k));
-  return summary_of(scores);
+  return summarize(scores);
 }
 
 // The logarithms of the scores of each model. Models are compared by ratios of scores, since a square unlike
 // the others has scores that are larger for every model, and would outweigh them.
-std::array<std::vector<double>, 3> logarithms_of(const Scores& scores) {
+std::array<std::vector<double>, 3> log_scores(const Scores& scores) {
   std::array<std::vector<double>, 3> logs;
   for (std::size_t m = 0; m < scores.size(); ++m) {
     for (const TextureScore& s : scores[m]) logs[m].push_back(portable::log(std::max(s.sum(), 1e-9)));
@@ -158,8 +159,8 @@ std::array<std::vector<double>, 3> logarithms_of(const Scores& scores) {
   return logs;
 }
 
-TextureModel simplest_of_the_best(const Scores& scores) {
-  const std::array<std::vector<double>, 3> logs = logarithms_of(scores);
+TextureModel simplest_best_model(const Scores& scores) {
+  const std::array<std::vector<double>, 3> logs = log_scores(scores);
   const auto& best = *std::min_element(
       logs.begin(), logs.end(), [](const auto& a, const auto& b) { return sample_mean(a) < sample_mean(b); });
   const auto is_near = [&](const std::vector<double>& model) {
@@ -184,12 +185,12 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
   ModelChoice choice;
   const int side = std::min(kMostSide, std::min(photo.width, photo.height) / 2);
   if (side < kSmallestExemplarSide) return choice;
-  const std::vector<GreyImage> squares = squares_of(photo, side);
+  const std::vector<GreyImage> squares = quarter_squares(photo, side);
   if (static_cast<int>(squares.size()) < kLeastSquares) return choice;
   choice.squares = static_cast<int>(squares.size());
   choice.side = side;
-  const std::vector<TextureDistributions> distributions = distributions_of(squares, side);
-  choice.photo = score_of_squares(distributions);
+  const std::vector<TextureDistributions> distributions = find_distributions(squares, side);
+  choice.photo = score_squares(distributions);
   Scores scores;
   for (std::vector<TextureScore>& model_scores : scores) model_scores.resize(squares.size());
   const std::size_t all = scores.size() * squares.size();
@@ -203,13 +204,13 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
       const std::size_t m = static_cast<std::size_t>(i) / squares.size(),
                         k = static_cast<std::size_t>(i) % squares.size();
       const std::vector<GreyImage> textures =
-          textures_of(kTextureModels[m], squares[k], name, options, seed, part);
-      scores[m][k] = held_out_score(distributions_of(textures, side), distributions, k);
+          make_textures(kTextureModels[m], squares[k], name, options, seed, part);
+      scores[m][k] = held_out_score(find_distributions(textures, side), distributions, k);
       ++done;
     });
   });
-  for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summary_of(scores[m]);
-  choice.taken = simplest_of_the_best(scores);
+  for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summarize(scores[m]);
+  choice.taken = simplest_best_model(scores);
   return choice;
 }
 

@@ -186,7 +186,7 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
   return photo;
 }
 
-GaborLayer layer_of(const FittedChannel& channel, bool first) {
+GaborLayer make_gabor_layer(const FittedChannel& channel, bool first) {
   GaborLayer layer;
   layer.exemplar_mean = channel.fit.exemplar_mean;
   layer.exemplar_rms = channel.fit.exemplar_rms;

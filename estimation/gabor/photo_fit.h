@@ -68,7 +68,7 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
 
 // The recipe's layer of a channel, without name and physical scale. Lengths are pixels. The height is the
 // exemplar's own deviation in the first channel and 0 in the others.
-GaborLayer layer_of(const FittedChannel& channel, bool first);
+GaborLayer make_gabor_layer(const FittedChannel& channel, bool first);
 
 // The predicted peak memory, in bytes, of a program that fits an image of this size. It is the memory of the
 // image while it is read and kept, and the memory of the pursuit for each point of the spectrum's grid. For

@@ -9,7 +9,7 @@ namespace astrolith {
 namespace {
 
 // Two hashes of 32 bits with different starts. Among 10^5 points, two share all 64 bits once in 10^9 runs.
-std::uint64_t key_of(std::span<const double> x) {
+std::uint64_t hash_position(std::span<const double> x) {
   std::uint32_t low = 1, high = 2;
   for (const double value : x) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -24,13 +24,13 @@ std::uint64_t key_of(std::span<const double> x) {
 
 std::optional<double> EvaluationLog::find(std::span<const double> x) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto found = values_.find(key_of(x));
+  const auto found = values_.find(hash_position(x));
   return found == values_.end() ? std::nullopt : std::optional<double>(found->second);
 }
 
 void EvaluationLog::add(std::span<const double> x, double value) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  values_.emplace(key_of(x), value);
+  values_.emplace(hash_position(x), value);
 }
 
 std::size_t EvaluationLog::size() const {

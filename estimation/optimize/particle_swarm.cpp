@@ -20,7 +20,7 @@ struct Particle {
 };
 
 // Random numbers of one particle in one generation. They do not depend on the order of evaluation.
-CounterRandom random_of(const OptimizeOptions& options, std::int64_t generation, std::size_t particle) {
+CounterRandom make_random(const OptimizeOptions& options, std::int64_t generation, std::size_t particle) {
   return CounterRandom(options.seed, static_cast<std::uint64_t>(generation) << 32 | particle);
 }
 
@@ -51,7 +51,7 @@ void move(Particle& p, const std::vector<double>& swarm_best, const Bounds& boun
 std::vector<Particle> first_swarm(const Bounds& bounds, const OptimizeOptions& options) {
   std::vector<Particle> swarm;
   for (std::size_t i = 0; i < static_cast<std::size_t>(options.population); ++i) {
-    swarm.push_back(scatter(bounds, random_of(options, 0, i)));
+    swarm.push_back(scatter(bounds, make_random(options, 0, i)));
   }
   if (!options.start.empty()) swarm[0].x = options.start;
   return swarm;
@@ -80,7 +80,7 @@ OptimizeResult particle_swarm(const BatchObjective& objective, const Bounds& bou
     }
     if (!best.generation_done()) return best.result();
     for (std::size_t i = 0; i < swarm.size(); ++i) {
-      move(swarm[i], best.result().x, bounds, random_of(options, generation + 1, i));
+      move(swarm[i], best.result().x, bounds, make_random(options, generation + 1, i));
     }
   }
 }

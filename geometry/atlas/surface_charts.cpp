@@ -180,7 +180,7 @@ class FlatChart {
   bool add(const FlatTriangle& t) {
     const auto [x0, x1] = std::minmax({t[0].x, t[1].x, t[2].x});
     const auto [y0, y1] = std::minmax({t[0].y, t[1].y, t[2].y});
-    const std::int64_t i0 = cell_of(x0), i1 = cell_of(x1), j0 = cell_of(y0), j1 = cell_of(y1);
+    const std::int64_t i0 = cell_at(x0), i1 = cell_at(x1), j0 = cell_at(y0), j1 = cell_at(y1);
     for (std::int64_t i = i0; i <= i1; ++i) {
       for (std::int64_t j = j0; j <= j1; ++j) {
         const auto found = cells_.find(key(i, j));
@@ -199,7 +199,7 @@ class FlatChart {
   }
 
  private:
-  std::int64_t cell_of(double x) const { return static_cast<std::int64_t>(std::floor(x * per_length_)); }
+  std::int64_t cell_at(double x) const { return static_cast<std::int64_t>(std::floor(x * per_length_)); }
   static std::uint64_t key(std::int64_t i, std::int64_t j) {
     return static_cast<std::uint64_t>(i) * 0x100000001ull + static_cast<std::uint64_t>(j);
   }
@@ -233,17 +233,17 @@ SurfaceCharts surface_charts(const TriangleMesh& mesh) {
   const double cell = chart_cell(mesh);
   SurfaceCharts charts{std::vector(mesh.triangles.size(), kNoChart), {}};
   for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
-    if (charts.chart_of[first] != kNoChart) continue;
-    const auto number = static_cast<std::uint32_t>(charts.axis_of.size());
-    charts.axis_of.push_back(axis[first]);
+    if (charts.triangle_chart[first] != kNoChart) continue;
+    const auto number = static_cast<std::uint32_t>(charts.chart_axis.size());
+    charts.chart_axis.push_back(axis[first]);
     FlatChart flat(cell);
     std::deque<std::uint32_t> front{first};
     while (!front.empty()) {
       const std::uint32_t f = front.front();
       front.pop_front();
-      if (charts.chart_of[f] != kNoChart || axis[f] != axis[first]) continue;
+      if (charts.triangle_chart[f] != kNoChart || axis[f] != axis[first]) continue;
       if (!flat.add(projected(mesh, mesh.triangles[f], kChartAxes[axis[f]]))) continue;
-      charts.chart_of[f] = number;
+      charts.triangle_chart[f] = number;
       for (const std::uint32_t n : neighbours[f]) {
         if (n != kNoTriangle) front.push_back(n);
       }

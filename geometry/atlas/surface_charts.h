@@ -27,8 +27,8 @@ inline constexpr std::array<ChartAxis, 6> kChartAxes{{{{0, 1, 0}, {0, 0, 1}, {1,
 inline constexpr double kLeastChartCosine = 0.505;
 
 struct SurfaceCharts {
-  std::vector<std::uint32_t> chart_of;  // (#F)
-  std::vector<std::uint8_t> axis_of;    // (#charts) an index into kChartAxes
+  std::vector<std::uint32_t> triangle_chart;  // (#F)
+  std::vector<std::uint8_t> chart_axis;       // (#charts) an index into kChartAxes
 };
 
 // Each triangle takes the axis that the surface around it faces, where its own normal lies within 59 degrees

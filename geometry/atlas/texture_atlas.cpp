@@ -39,7 +39,7 @@ class Skyline {
     int x, y;
   };
 
-  int end_of(std::size_t i) const { return i + 1 < steps_.size() ? steps_[i + 1].x : side_; }
+  int step_end(std::size_t i) const { return i + 1 < steps_.size() ? steps_[i + 1].x : side_; }
 
   int top_over(std::size_t first, int width) const {
     int top = 0;
@@ -51,7 +51,7 @@ class Skyline {
   void raise(std::size_t first, const RectanglePlace& at, const RectangleSize& size) {
     const int end = at.x + size.width;
     std::size_t last = first;  // the first step that reaches beyond the rectangle
-    while (last < steps_.size() && end_of(last) <= end) ++last;
+    while (last < steps_.size() && step_end(last) <= end) ++last;
     std::vector<Step> made{{at.x, at.y + size.height}};
     if (last < steps_.size()) made.push_back({end, steps_[last].y});
     const auto from = steps_.begin() + static_cast<std::ptrdiff_t>(first);
@@ -68,12 +68,12 @@ struct ChartExtents {
   std::vector<double> left, top, width, height;  // (#charts) top: the greatest coordinate along the axis's up
 };
 
-ChartExtents extents_of(const TriangleMesh& mesh, const SurfaceCharts& charts) {
-  const std::size_t count = charts.axis_of.size();
+ChartExtents chart_extents(const TriangleMesh& mesh, const SurfaceCharts& charts) {
+  const std::size_t count = charts.chart_axis.size();
   std::vector<double> x0(count, 1e300), x1(count, -1e300), y0(count, 1e300), y1(count, -1e300);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const std::uint32_t c = charts.chart_of[f];
-    const ChartAxis& axis = kChartAxes[charts.axis_of[c]];
+    const std::uint32_t c = charts.triangle_chart[f];
+    const ChartAxis& axis = kChartAxes[charts.chart_axis[c]];
     for (const std::uint32_t v : mesh.triangles[f]) {
       const double x = dot(mesh.vertices[v], axis.right), y = dot(mesh.vertices[v], axis.up);
       x0[c] = std::min(x0[c], x), x1[c] = std::max(x1[c], x);
@@ -122,14 +122,14 @@ AtlasLayout largest_layout(const ChartExtents& extents, int side, double least) 
   return best;
 }
 
-TextureCoordinates coordinates_of(const TriangleMesh& mesh, const SurfaceCharts& charts,
-                                  const ChartExtents& extents, const AtlasLayout& layout, int side) {
+TextureCoordinates texture_coordinates(const TriangleMesh& mesh, const SurfaceCharts& charts,
+                                       const ChartExtents& extents, const AtlasLayout& layout, int side) {
   TextureCoordinates made;
   std::unordered_map<std::uint64_t, std::uint32_t> known;  // by chart and vertex
   known.reserve(mesh.vertices.size() + mesh.vertices.size() / 4);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const std::uint32_t c = charts.chart_of[f];
-    const ChartAxis& axis = kChartAxes[charts.axis_of[c]];
+    const std::uint32_t c = charts.triangle_chart[f];
+    const ChartAxis& axis = kChartAxes[charts.chart_axis[c]];
     Triangle& out = made.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.triangles[f][k];
@@ -140,7 +140,7 @@ TextureCoordinates coordinates_of(const TriangleMesh& mesh, const SurfaceCharts&
       const Vec3d& p = mesh.vertices[v];
       const double x = (dot(p, axis.right) - extents.left[c]) * layout.texels_per_length,
                    y = (extents.top[c] - dot(p, axis.up)) * layout.texels_per_length;
-      made.vertex_of.push_back(v);
+      made.mesh_vertex.push_back(v);
       made.uv.push_back({static_cast<float>((layout.places[c].x + kChartPadding + x) / side),
                          static_cast<float>((layout.places[c].y + kChartPadding + y) / side)});
     }
@@ -185,20 +185,20 @@ std::optional<std::vector<RectanglePlace>> pack_rectangles(std::span<const Recta
 
 TextureAtlas make_texture_atlas(const TriangleMesh& mesh, int side, const std::string& name, int most_side) {
   const SurfaceCharts charts = surface_charts(mesh);
-  const ChartExtents extents = extents_of(mesh, charts);
+  const ChartExtents extents = chart_extents(mesh, charts);
   AtlasLayout layout = largest_layout(extents, side, 1.0 / mean_edge(mesh));
   while (layout.places.empty() && 2 * side <= most_side) {
     side *= 2;
     layout = largest_layout(extents, side, 1.0 / mean_edge(mesh));
   }
   if (layout.places.empty()) {
-    throw InputError(name + ": " + std::to_string(charts.axis_of.size()) + " charts of " +
+    throw InputError(name + ": " + std::to_string(charts.chart_axis.size()) + " charts of " +
                      std::to_string(mesh.triangles.size()) + " triangles do not fit into " +
                      std::to_string(side) + " x " + std::to_string(side) +
                      " texels; take a larger image, or fewer triangles");
   }
-  TextureAtlas atlas{coordinates_of(mesh, charts, extents, layout, side),
-                     charts.chart_of,
+  TextureAtlas atlas{texture_coordinates(mesh, charts, extents, layout, side),
+                     charts.triangle_chart,
                      {},
                      sizes_at(extents, layout.texels_per_length),
                      side,
@@ -215,7 +215,7 @@ AtlasStretch atlas_stretch(const TriangleMesh& mesh, const TextureCoordinates& c
     std::array<Vec3d, 3> p;
     std::array<TexturePoint, 3> t;
     for (std::size_t k = 0; k < 3; ++k)
-      p[k] = mesh.vertices[coordinates.vertex_of[triangle[k]]], t[k] = coordinates.uv[triangle[k]];
+      p[k] = mesh.vertices[coordinates.mesh_vertex[triangle[k]]], t[k] = coordinates.uv[triangle[k]];
     stretch.filled += 0.5 * std::fabs((double{t[1][0]} - t[0][0]) * (double{t[2][1]} - t[0][1]) -
                                       (double{t[2][0]} - t[0][0]) * (double{t[1][1]} - t[0][1]));
     const auto [large, small] = singular_values(p, t);

@@ -28,7 +28,7 @@ inline constexpr int kChartPadding = 4;
 
 struct TextureAtlas {
   TextureCoordinates coordinates;
-  std::vector<std::uint32_t> chart_of;  // (#F)
+  std::vector<std::uint32_t> triangle_chart;  // (#F)
   // (#charts) The rectangle of each chart with its padding, in texels.
   std::vector<RectanglePlace> places;
   std::vector<RectangleSize> sizes;

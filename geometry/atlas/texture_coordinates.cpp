@@ -139,7 +139,7 @@ float latitude_share(const Vec3d& p) {
 bool is_on_axis(const Vec3d& p) { return p.x == 0.0 && p.y == 0.0; }
 
 // The u of a triangle's corners, which lie on one side of the 180th meridian.
-std::array<double, 3> shares_of(const std::array<Vec3d, 3>& p) {
+std::array<double, 3> triangle_longitudes(const std::array<Vec3d, 3>& p) {
   const bool is_east = p[0].y + p[1].y + p[2].y > 0.0;
   std::array<double, 3> u{};
   double sum = 0.0, others = 0.0;
@@ -181,10 +181,11 @@ LongitudeMap longitude_map(const TriangleMesh& mesh, const Vec3d& origin) {
   TextureCoordinates& made = map.coordinates;
   std::map<std::pair<std::uint32_t, float>, std::uint32_t> known;
   constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> first_of(map.mesh.vertices.size(), kNone);  // textured vertices, one for most
+  std::vector<std::uint32_t> first_textured(map.mesh.vertices.size(),
+                                            kNone);  // textured vertices, one for most
   const auto textured = [&](std::uint32_t vertex, const Vec3d& place, float u) {
     const auto number = static_cast<std::uint32_t>(made.uv.size());
-    std::uint32_t& first = first_of[vertex];
+    std::uint32_t& first = first_textured[vertex];
     if (first != kNone && made.uv[first][0] == u) return first;
     if (first != kNone) {
       const auto [found, is_new] = known.try_emplace({vertex, u}, number);
@@ -192,14 +193,14 @@ LongitudeMap longitude_map(const TriangleMesh& mesh, const Vec3d& origin) {
     } else {
       first = number;
     }
-    made.vertex_of.push_back(vertex);
+    made.mesh_vertex.push_back(vertex);
     made.uv.push_back({u, latitude_share(place)});
     return number;
   };
   for (const Triangle& t : map.mesh.triangles) {
     std::array<Vec3d, 3> places;
     for (std::size_t k = 0; k < 3; ++k) places[k] = map.mesh.vertices[t[k]] + origin;
-    const std::array<double, 3> u = shares_of(places);
+    const std::array<double, 3> u = triangle_longitudes(places);
     Triangle& out = made.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) out[k] = textured(t[k], places[k], static_cast<float>(u[k]));
   }
@@ -213,10 +214,10 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
     std::array<Vec3d, 3> p;
     std::array<TexturePoint, 3> uv;
     for (std::size_t k = 0; k < 3; ++k)
-      p[k] = mesh.vertices[coordinates.vertex_of[t[k]]], uv[k] = coordinates.uv[t[k]];
+      p[k] = mesh.vertices[coordinates.mesh_vertex[t[k]]], uv[k] = coordinates.uv[t[k]];
     const TextureSlope slope = texture_slope(p, uv);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d& normal = mesh.normals[coordinates.vertex_of[t[k]]];
+      const Vec3d& normal = mesh.normals[coordinates.mesh_vertex[t[k]]];
       const Vec3d next = along_plane(p[(k + 1) % 3] - p[k], normal),
                   last = along_plane(p[(k + 2) % 3] - p[k], normal);
       sums[t[k]] += corner_angle(next, last) * normalized(along_plane(slope.along_u, normal));
@@ -225,7 +226,7 @@ std::vector<VertexTangent> vertex_tangents(const TriangleMesh& mesh, const Textu
   }
   std::vector<VertexTangent> tangents(sums.size());
   for (std::size_t w = 0; w < sums.size(); ++w) {
-    const Vec3d& normal = mesh.normals[coordinates.vertex_of[w]];
+    const Vec3d& normal = mesh.normals[coordinates.mesh_vertex[w]];
     Vec3d tangent = normalized(along_plane(sums[w], normal));
     if (!(squared_norm(tangent) > 0.0)) tangent = crossed_tangents(normal).first;
     const Vec3f t = to_float(tangent);

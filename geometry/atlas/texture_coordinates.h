@@ -14,7 +14,7 @@ namespace astrolith {
 using TexturePoint = std::array<float, 2>;
 
 struct TextureCoordinates {
-  std::vector<std::uint32_t> vertex_of;  // (#W) the vertex of the mesh that each textured vertex is
+  std::vector<std::uint32_t> mesh_vertex;  // (#W) the vertex of the mesh that each textured vertex is
   // (#W) u and v in [0, 1]: u from the left of the image to the right, v from the top down (glTF 2.0).
   std::vector<TexturePoint> uv;
   std::vector<Triangle> triangles;  // (#F) textured vertices, corner by corner those of the mesh's triangles

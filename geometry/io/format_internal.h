@@ -20,8 +20,8 @@
 namespace astrolith {
 
 // In front of the numbers of MeshFileInfo::origin, of a part of a body and of a whole one.
-inline constexpr std::string_view kOriginOfPart = "origin, to be added to all coordinates: ";
-inline constexpr std::string_view kOriginOfBody = "origin of the body, to be added to all coordinates: ";
+inline constexpr std::string_view kPartOriginWords = "origin, to be added to all coordinates: ";
+inline constexpr std::string_view kBodyOriginWords = "origin of the body, to be added to all coordinates: ";
 
 struct MeshFile {
   std::filesystem::path path;

@@ -209,7 +209,7 @@ void append_all(BufferedOutput& buffer, const std::vector<Value>& values, const 
     for (const Value& value : values) buffer.append_value(stored(value));
     return;
   }
-  for (const std::uint32_t vertex : level.skin->coordinates.vertex_of)
+  for (const std::uint32_t vertex : level.skin->coordinates.mesh_vertex)
     buffer.append_value(stored(values[vertex]));
 }
 

@@ -38,7 +38,7 @@ bool is_regular(const std::vector<double>& values, double step) {
   return true;
 }
 
-double step_of(const std::vector<double>& values) {
+double grid_step(const std::vector<double>& values) {
   return (values.back() - values.front()) / static_cast<double>(values.size() - 1);
 }
 
@@ -79,7 +79,7 @@ bool fill(Grid& grid, const std::vector<Row>& rows, double seam) {
 }
 
 // The grid of the rows; empty where they are none, or end before the poles.
-std::optional<Grid> grid_of(const std::vector<Row>& rows) {
+std::optional<Grid> find_grid(const std::vector<Row>& rows) {
   Grid grid;
   for (const Row& row : rows) {
     if (std::fabs(row.latitude) > 90.0 + 1e-6 || !(row.radius > 0.0)) return {};
@@ -95,7 +95,7 @@ std::optional<Grid> grid_of(const std::vector<Row>& rows) {
     seam = grid.longitudes.back();
     grid.longitudes.pop_back();
   }
-  const double up = step_of(grid.latitudes), along = 360.0 / static_cast<double>(grid.longitudes.size());
+  const double up = grid_step(grid.latitudes), along = 360.0 / static_cast<double>(grid.longitudes.size());
   if (!is_regular(grid.latitudes, up) || !is_regular(grid.longitudes, along)) return {};
   const double reach = (1.0 + kStepSlack) * up;
   if (grid.latitudes.front() - reach > -90.0 || grid.latitudes.back() + reach < 90.0) return {};
@@ -143,15 +143,15 @@ std::vector<Row> named_rows(NamedTable& table, const TableLayout& layout) {
   return rows;
 }
 
-TriangleMesh mesh_of(const Grid& grid) {
+TriangleMesh grid_mesh(const Grid& grid) {
   constexpr double kRadians = std::numbers::pi / 180.0;
   TriangleMesh mesh;
   const auto around = static_cast<std::uint32_t>(grid.longitudes.size()),
              rings = static_cast<std::uint32_t>(grid.latitudes.size());
   for (std::uint32_t j = 0; j < rings; ++j) {
     for (std::uint32_t i = 0; i < around; ++i) {
-      mesh.vertices.push_back(place_of(kRadians * grid.latitudes[j], kRadians * grid.longitudes[i],
-                                       grid.radii[std::size_t{j} * around + i]));
+      mesh.vertices.push_back(spherical_point(kRadians * grid.latitudes[j], kRadians * grid.longitudes[i],
+                                              grid.radii[std::size_t{j} * around + i]));
     }
   }
   const std::uint32_t south = rings * around, north = south + 1, last = south - around;
@@ -174,7 +174,7 @@ TriangleMesh mesh_of(const Grid& grid) {
 bool is_grid_table(const MeshFile& file) {
   NamedTable table(file);
   if (table.layout()) return table.layout()->spherical;
-  return table.unknown_names().empty() && grid_of(unnamed_rows(table)).has_value();
+  return table.unknown_names().empty() && find_grid(unnamed_rows(table)).has_value();
 }
 
 TriangleMesh read_grid_table(const MeshFile& file) {
@@ -184,7 +184,7 @@ TriangleMesh read_grid_table(const MeshFile& file) {
   if (!named_west && says_west(file.label.empty() ? label_beside(file.path).text : file.label)) {
     for (Row& row : rows) row.longitude = -row.longitude;
   }
-  const std::optional<Grid> grid = grid_of(rows);
+  const std::optional<Grid> grid = find_grid(rows);
   if (!grid) {
     file.fail("",
               "its latitudes and longitudes make no regular grid from pole to pole with a radius everywhere",
@@ -192,7 +192,7 @@ TriangleMesh read_grid_table(const MeshFile& file) {
   }
   if (grid->radii.size() >= static_cast<std::size_t>(kMaxVertices) - 2)
     file.fail("", "has more places than 2^32", "give fewer");
-  return mesh_of(*grid);
+  return grid_mesh(*grid);
 }
 
 }  // namespace astrolith

@@ -205,8 +205,8 @@ class FaceSampler {
 
   void add(const Corners& corners) {
     if (beside(face_, corners)) return;
-    const auto [left, right] = span_of(corners, face_.right);
-    const auto [top, bottom] = span_of(corners, face_.down);
+    const auto [left, right] = covered_span(corners, face_.right);
+    const auto [top, bottom] = covered_span(corners, face_.down);
     for (std::size_t j = top; j < bottom; ++j) {
       for (std::size_t i = left; i < right; ++i) sample(corners, i, j);
     }
@@ -222,7 +222,7 @@ class FaceSampler {
 
  private:
   // The grid places that a triangle may cover, along one axis.
-  std::array<std::size_t, 2> span_of(const Corners& corners, const Vec3d& axis) const {
+  std::array<std::size_t, 2> covered_span(const Corners& corners, const Vec3d& axis) const {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const Vec3d& p : corners) {
       const double ahead = dot(p, face_.out);

@@ -75,9 +75,9 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
 TriangleMesh in_frame(TriangleMesh mesh, const MeshFile& file) {
   constexpr std::size_t kMostHeader = 4096, kLongestPoint = 100;
   const std::string_view header = std::string_view(file.bytes).substr(0, kMostHeader);
-  const std::size_t at = header.find(kOriginOfBody);
+  const std::size_t at = header.find(kBodyOriginWords);
   if (at == header.npos) return mesh;
-  std::istringstream words{std::string(header.substr(at + kOriginOfBody.size(), kLongestPoint))};
+  std::istringstream words{std::string(header.substr(at + kBodyOriginWords.size(), kLongestPoint))};
   words.imbue(std::locale::classic());
   Vec3d origin;
   if (!(words >> origin.x >> origin.y >> origin.z)) {
@@ -163,7 +163,7 @@ std::vector<std::string> info_lines(const MeshFileInfo& info) {
     lines.push_back(std::string(label) + text);
   };
   add("length unit: ", info.length_unit);
-  if (info.origin) add(info.whole_body ? kOriginOfBody : kOriginOfPart, point_text(*info.origin));
+  if (info.origin) add(info.whole_body ? kBodyOriginWords : kPartOriginWords, point_text(*info.origin));
   add("frame: ", info.frame);
   add("", info.comment);
   for (const std::string& note : info.notes) add("", note);

@@ -190,7 +190,7 @@ bool find_place(const std::vector<ColumnName>& columns, TableLayout& layout) {
 }
 
 // The unit of x, y and z. It may stand behind one of them only: "x, y, z (km)".
-std::string unit_of(const std::vector<ColumnName>& columns, const TableLayout& layout) {
+std::string table_unit(const std::vector<ColumnName>& columns, const TableLayout& layout) {
   std::string unit;
   for (const std::size_t k : layout.columns) {
     if (!unit.empty() && !columns[k].unit.empty() && columns[k].unit != unit) return "several units";
@@ -239,7 +239,7 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string words_of(const std::vector<std::string>& names, const TableLayout& layout) {
+std::string describe(const std::vector<std::string>& names, const TableLayout& layout) {
   std::vector<std::string> taken, left;
   for (const std::size_t column : layout.columns) taken.push_back(names[column]);
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -265,14 +265,14 @@ std::optional<TableLayout> named_layout(std::string_view line) {
   TableLayout layout;
   if (!find_place(columns, layout)) return {};
   layout.width = names.size();
-  layout.unit = layout.spherical ? columns[layout.columns[2]].unit : unit_of(columns, layout);
+  layout.unit = layout.spherical ? columns[layout.columns[2]].unit : table_unit(columns, layout);
   layout.radians = std::numbers::pi / 180.0;
   if (layout.spherical) set_angles(columns, layout);
-  layout.words = words_of(names, layout);
+  layout.words = describe(names, layout);
   return layout;
 }
 
-Vec3d place_of(double latitude, double longitude, double radius) {
+Vec3d spherical_point(double latitude, double longitude, double radius) {
   const portable::SineCosine lat = portable::sine_and_cosine(latitude),
                              lon = portable::sine_and_cosine(longitude);
   return radius * Vec3d{lat.cosine * lon.cosine, lat.cosine * lon.sine, lat.sine};

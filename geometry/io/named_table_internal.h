@@ -33,7 +33,7 @@ std::string short_unit(std::string_view word);
 std::optional<TableLayout> named_layout(std::string_view line);
 
 // The place of latitude, longitude and radius, whose angles are in radians.
-Vec3d place_of(double latitude, double longitude, double radius);
+Vec3d spherical_point(double latitude, double longitude, double radius);
 
 // Reads a table row by row. Fields are separated by commas, semicolons, tabs or blanks. The names stand in
 // the first line, or in a comment before the first row. Throws InputError for angles in an unknown unit.

@@ -20,13 +20,13 @@ std::uint32_t corner_index(const TextScanner& scan, std::string_view corner, std
   return static_cast<std::uint32_t>(zero_based);
 }
 
-std::string line_of(std::string keyword, const Vec3d& v) {
+std::string to_line(std::string keyword, const Vec3d& v) {
   append_words(keyword, v.x, v.y, v.z);
   return keyword + "\n";
 }
 
 // The line of a face. `textured` has its corners in the texture, or is null.
-std::string line_of(const Triangle& triangle, const Triangle* textured, bool with_normals) {
+std::string to_line(const Triangle& triangle, const Triangle* textured, bool with_normals) {
   const auto number = [](std::uint32_t index) { return std::to_string(std::uint64_t{index} + 1); };
   std::string line = "f";
   for (std::size_t k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ std::string line_of(const Triangle& triangle, const Triangle* textured, bool wit
 }
 
 // Wavefront counts v from the bottom of the image up.
-std::string line_of(const TexturePoint& uv) {
+std::string to_line(const TexturePoint& uv) {
   std::string line = "vt";
   append_words(line, double{uv[0]}, 1.0 - double{uv[1]});
   return line + "\n";
@@ -77,14 +77,14 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   BufferedOutput buffer(out);
   for (const std::string& text : info_lines(info)) buffer.append("# " + text + "\n");
   buffer.append("# axes: z up; import into Blender with forward axis Y, up axis Z\n");
-  for (const Vec3d& v : mesh.vertices) buffer.append(line_of("v", v));
-  for (const Vec3d& n : mesh.normals) buffer.append(line_of("vn", n));
+  for (const Vec3d& v : mesh.vertices) buffer.append(to_line("v", v));
+  for (const Vec3d& n : mesh.normals) buffer.append(to_line("vn", n));
   const TextureCoordinates* const texture = info.skin ? &info.skin->coordinates : nullptr;
   if (texture != nullptr) {
-    for (const TexturePoint& uv : texture->uv) buffer.append(line_of(uv));
+    for (const TexturePoint& uv : texture->uv) buffer.append(to_line(uv));
   }
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    buffer.append(line_of(mesh.triangles[f], texture != nullptr ? &texture->triangles[f] : nullptr,
+    buffer.append(to_line(mesh.triangles[f], texture != nullptr ? &texture->triangles[f] : nullptr,
                           !mesh.normals.empty()));
   }
   buffer.flush();

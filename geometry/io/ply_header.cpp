@@ -67,14 +67,14 @@ PlyProperty parse_property(TextScanner& scan) {
 
 }  // namespace
 
-std::size_t size_of(PlyType type) {
+std::size_t type_size(PlyType type) {
   static constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
   return kSizes[static_cast<std::size_t>(type)];
 }
 
 std::size_t PlyElement::least_row_bytes() const {
   std::size_t bytes = 0;
-  for (const PlyProperty& p : properties) bytes += size_of(p.is_list ? p.count_type : p.type);
+  for (const PlyProperty& p : properties) bytes += type_size(p.is_list ? p.count_type : p.type);
   return bytes;
 }
 

@@ -16,7 +16,7 @@ namespace astrolith {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-std::size_t size_of(PlyType type);
+std::size_t type_size(PlyType type);
 
 struct PlyProperty {
   std::string name;

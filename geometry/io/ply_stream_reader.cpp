@@ -16,7 +16,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
 
 constexpr std::uint64_t kTrianglesInBlock = 1 << 14;
-constexpr std::uint64_t kVerticesAtOnce = 1 << 14;
 constexpr std::size_t kLongestHeader = 1 << 16;  // bytes
 
 bool starts_with_floats_xyz(const PlyElement& element) {
@@ -30,7 +29,7 @@ bool starts_with_floats_xyz(const PlyElement& element) {
                       [](const PlyProperty& p) { return p.is_list; });
 }
 
-bool has_one_list_of_vertices(const PlyElement& element) {
+bool has_one_vertex_list(const PlyElement& element) {
   return element.name == "face" && element.properties.size() == 1 && element.properties[0].is_list &&
          element.properties[0].count_type == PlyType::uint8 && element.properties[0].type == PlyType::uint32;
 }
@@ -55,7 +54,7 @@ void PlyStreamReader::read_header() {
   TextScanner scan(start);
   const PlyHeader header = read_ply_header(scan);
   if (header.ascii || header.order != std::endian::little || header.elements.size() != 2 ||
-      !starts_with_floats_xyz(header.elements[0]) || !has_one_list_of_vertices(header.elements[1])) {
+      !starts_with_floats_xyz(header.elements[0]) || !has_one_vertex_list(header.elements[1])) {
     fail("has another layout than synth's binary PLY");
   }
   num_vertices_ = header.elements[0].count;
@@ -93,7 +92,7 @@ const std::vector<Triangle>& PlyStreamReader::read_triangles(std::uint64_t block
   return triangles_;
 }
 
-std::vector<PlyStreamReader::BlockRange> PlyStreamReader::ranges_of_blocks() {
+std::vector<PlyStreamReader::BlockRange> PlyStreamReader::block_ranges() {
   std::vector<BlockRange> ranges((num_triangles_ + kTrianglesInBlock - 1) / kTrianglesInBlock,
                                  {std::numeric_limits<std::uint32_t>::max(), 0});
   for (std::size_t block = 0; block < ranges.size(); ++block) {
@@ -123,7 +122,7 @@ void PlyStreamReader::pass_vertices(std::uint64_t end, MeshSink& sink) {
 }
 
 void PlyStreamReader::read(MeshSink& sink) {
-  const std::vector<BlockRange> ranges = ranges_of_blocks();
+  const std::vector<BlockRange> ranges = block_ranges();
   std::vector<std::uint32_t> lowest_from(ranges.size() + 1, std::numeric_limits<std::uint32_t>::max());
   for (std::size_t i = ranges.size(); i > 0; --i) {
     lowest_from[i - 1] = std::min(lowest_from[i], ranges[i - 1].lowest);
@@ -138,7 +137,8 @@ void PlyStreamReader::read(MeshSink& sink) {
     if (needed > passed_) pass_vertices(needed, sink);
     for (std::size_t block = first; block < end; ++block) sink.add_triangles(read_triangles(block));
   }
-  while (passed_ < num_vertices_) pass_vertices(std::min(passed_ + kVerticesAtOnce, num_vertices_), sink);
+  constexpr std::uint64_t kBatch = 1 << 14;
+  while (passed_ < num_vertices_) pass_vertices(std::min(passed_ + kBatch, num_vertices_), sink);
 }
 
 }  // namespace astrolith

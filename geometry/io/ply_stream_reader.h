@@ -41,7 +41,7 @@ class PlyStreamReader {
   void go_to(std::uint64_t offset);
   void fill(void* data, std::size_t bytes);
   const std::vector<Triangle>& read_triangles(std::uint64_t block);
-  std::vector<BlockRange> ranges_of_blocks();
+  std::vector<BlockRange> block_ranges();
   void pass_vertices(std::uint64_t end, MeshSink& sink);
 
   std::filesystem::path path_;

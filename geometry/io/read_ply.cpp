@@ -39,12 +39,12 @@ class BinarySource {
     }
     return 0.0;
   }
-  void skip(PlyType type) { bytes_.skip(size_of(type), "a property"); }
+  void skip(PlyType type) { bytes_.skip(type_size(type), "a property"); }
   void need_rows(const PlyElement& e) const {
     bytes_.need_rows(e.count, e.least_row_bytes(), astrolith::quoted(e.name) + " rows");
   }
   void need_entries(std::uint64_t count, PlyType type) const {
-    bytes_.need_rows(count, size_of(type), "list entries");
+    bytes_.need_rows(count, type_size(type), "list entries");
   }
   [[noreturn]] void fail(std::string_view what, std::string_view remedy) const { bytes_.fail(what, remedy); }
 
@@ -203,7 +203,7 @@ TriangleMesh read_after(const PlyHeader& header, const MeshFile& file, TextScann
 }
 
 // The properties of the vertices that are single numbers; and for messages.
-std::vector<std::string> value_names_of(const PlyHeader& header) {
+std::vector<std::string> value_names(const PlyHeader& header) {
   std::vector<std::string> names;
   for (const PlyElement& element : header.elements) {
     if (element.name != "vertex") continue;
@@ -214,9 +214,9 @@ std::vector<std::string> value_names_of(const PlyHeader& header) {
   return names;
 }
 
-std::string words_of_values(const PlyHeader& header) {
+std::string describe_values(const PlyHeader& header) {
   std::string words;
-  for (const std::string& name : value_names_of(header)) {
+  for (const std::string& name : value_names(header)) {
     if (words.size() < 200) words += (words.empty() ? "" : ", ") + name.substr(0, 40);
   }
   return words;
@@ -239,7 +239,7 @@ VertexValues read_ply_values(const std::filesystem::path& file, const std::strin
   const TriangleMesh mesh = read_after(header, content, scan, wanted);
   if (wanted.values.empty() || wanted.values.size() != mesh.vertices.size()) {
     content.fail("", "the vertices have no property " + astrolith::quoted(name),
-                 "choose from " + words_of_values(header));
+                 "choose from " + describe_values(header));
   }
   return wanted;
 }
@@ -247,7 +247,7 @@ VertexValues read_ply_values(const std::filesystem::path& file, const std::strin
 std::vector<std::string> ply_value_names(const std::filesystem::path& file) {
   const MeshFile content = loaded_ply(file);
   TextScanner scan(content);
-  return value_names_of(read_ply_header(scan));
+  return value_names(read_ply_header(scan));
 }
 
 TriangleMesh read_ply(const MeshFile& file) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kLargestPlace = 1e18;
 
-TableLayout layout_of(const NamedTable& table, const MeshFile& file) {
+TableLayout require_layout(const NamedTable& table, const MeshFile& file) {
   if (table.layout()) return *table.layout();
   if (!table.unknown_names().empty()) {
     table.fail("the first line " + quoted(table.unknown_names()) +
@@ -49,7 +49,7 @@ Vec3d place_in(const NamedTable& table, const TableLayout& layout) {
   const double latitude = layout.radians * table.number(first, "latitude"),
                longitude = layout.radians * table.number(second, "longitude");
   if (std::fabs(latitude) > 1.5707963267949) table.fail("the latitude is beyond a pole", "correct the line");
-  return place_of(latitude, layout.west ? -longitude : longitude, table.number(third, "radius"));
+  return spherical_point(latitude, layout.west ? -longitude : longitude, table.number(third, "radius"));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ PointTable read_point_table(const std::filesystem::path& file, std::string_view 
   const MeshFile content = load_mesh_file(file);
   refuse_other_kinds(content, "give lines of x, y and z");
   NamedTable table(content);
-  const TableLayout layout = layout_of(table, content);
+  const TableLayout layout = require_layout(table, content);
   const double scale = scale_to(layout, unit, table);
   PointTable points{{}, layout.words};
   while (table.next_row()) {

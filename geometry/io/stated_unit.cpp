@@ -17,7 +17,7 @@ constexpr std::size_t kMostHeader = 4096, kLongestUnit = 8;
 constexpr std::size_t kMostRead = std::size_t{1} << 18;
 
 // The beginning of the file's content; empty for what is no plain file.
-std::string start_of(const std::filesystem::path& file) {
+std::string read_start(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
   std::ifstream in(file, std::ios::binary);
@@ -37,7 +37,7 @@ std::string_view first_letters(std::string_view text) {
 }
 
 // The comment in a line of a header; empty where it is none.
-std::string_view comment_of(std::string_view line) {
+std::string_view find_comment(std::string_view line) {
   for (const std::string_view start : {"comment ", "obj_info ", "# ", "#", "//", "%", "Binary STL; "}) {
     if (line.starts_with(start)) return line.substr(start.size());
   }
@@ -55,7 +55,7 @@ std::string unknown_unit(std::string_view words_before, std::string_view word) {
 }
 
 // Whether a short form is of lengths; that of "ft" has no known length, and is stated all the same.
-bool is_of_lengths(std::string_view unit) {
+bool is_length_unit(std::string_view unit) {
   return unit.find(' ') == unit.npos && !unit.empty() && unit != "deg" && unit != "rad";
 }
 
@@ -74,7 +74,7 @@ std::string unit_in_words(std::string_view comment) {
     const std::string_view word = first_letters(rest), behind = rest.substr(word.size());
     if (behind.find_first_of("/^*") == 0) continue;
     if (word == "in" && behind.size() > 1 && behind[0] == ' ' && is_letter(behind[1])) continue;
-    if (std::string unit = short_unit(word); is_of_lengths(unit)) return unit;
+    if (std::string unit = short_unit(word); is_length_unit(unit)) return unit;
     if (word == "si") return "m";
     if (!mark.starts_with("unit") || mark == "units of ") continue;
     if (std::string unit = unknown_unit(std::string_view(lower).substr(0, at), first_letters(rest));
@@ -85,22 +85,22 @@ std::string unit_in_words(std::string_view comment) {
 }
 
 // The unit that a line of a header states; empty where it states none.
-std::string unit_of_line(std::string_view line) {
+std::string line_unit(std::string_view line) {
   constexpr std::string_view kLabel = "length unit: ";  // of write_mesh()
-  const std::string_view comment = comment_of(line);
+  const std::string_view comment = find_comment(line);
   if (comment.starts_with(kLabel)) {
     const std::string_view unit = first_letters(comment.substr(kLabel.size()));
     if (!unit.empty() && unit.size() <= kLongestUnit) return std::string(unit);
   }
   if (std::string unit = unit_in_words(comment); !unit.empty()) return unit;
   const std::optional<TableLayout> columns = named_layout(comment.empty() ? line : comment);
-  return columns && is_of_lengths(columns->unit) ? columns->unit : std::string();
+  return columns && is_length_unit(columns->unit) ? columns->unit : std::string();
 }
 
 }  // namespace
 
 StatedUnit stated_unit(const std::filesystem::path& file) {
-  const std::string start = start_of(file);
+  const std::string start = read_start(file);
   if (begins_pds3_label(start)) return {unit_in_label(start), {}};
   if (mesh_extension(file) == ".stl") {
     constexpr std::size_t kStlHeader = 80;
@@ -109,7 +109,7 @@ StatedUnit stated_unit(const std::filesystem::path& file) {
   }
   for (std::string_view rest = std::string_view(start).substr(0, kMostHeader); !rest.empty();) {
     const std::size_t end = std::min(rest.find_first_of("\n\r"), rest.size());
-    if (std::string unit = unit_of_line(rest.substr(0, end)); !unit.empty()) return {std::move(unit), {}};
+    if (std::string unit = line_unit(rest.substr(0, end)); !unit.empty()) return {std::move(unit), {}};
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   LabelBeside label = label_beside(file);

@@ -36,7 +36,7 @@ std::string stl_keyword(TextScanner& scan) {
 // The number of triangles that a binary file declares. Programs that write while they compute leave 0 or the
 // largest number: then it follows from the size. Bytes behind the triangles are passed over, but not
 // triangles.
-std::uint32_t count_of_triangles(ByteReader& bytes) {
+std::uint32_t read_triangle_count(ByteReader& bytes) {
   auto count = bytes.read<std::uint32_t>("the number of triangles");
   const std::size_t held = bytes.bytes_left() / kFacetBytes;
   const bool whole = bytes.bytes_left() % kFacetBytes == 0;
@@ -81,7 +81,7 @@ TriangleMesh read_stl_binary(const MeshFile& file) {
   TriangleMesh mesh;
   ByteReader bytes(file);
   bytes.skip(80, "the header");
-  const std::uint32_t count = count_of_triangles(bytes);
+  const std::uint32_t count = read_triangle_count(bytes);
   mesh.vertices.reserve(std::size_t{3} * count);
   mesh.triangles.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {

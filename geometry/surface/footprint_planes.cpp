@@ -50,8 +50,8 @@ struct HeightMoments {
   }
 };
 
-FootprintPlane plane_of(const HeightMoments& sums, std::int64_t row, std::int64_t column, int half,
-                        double unit, double pixel) {
+FootprintPlane fit_plane(const HeightMoments& sums, std::int64_t row, std::int64_t column, int half,
+                         double unit, double pixel) {
   const std::int64_t side = 2 * half + 1, count = side * side;
   // The variance of x, and of y, from the middle of the square.
   const double n = static_cast<double>(count), spread = static_cast<double>(count - 1) / 12.0;
@@ -65,9 +65,9 @@ FootprintPlane plane_of(const HeightMoments& sums, std::int64_t row, std::int64_
 }
 
 // Makes the planes of one row after another. Each column has the sums over the rows of the square.
-class RowOfPlanes {
+class PlaneRow {
  public:
-  RowOfPlanes(const HeightMap& map, const WholeHeights& whole, int half)
+  PlaneRow(const HeightMap& map, const WholeHeights& whole, int half)
       : map_(map), whole_(whole), half_(half), columns_(static_cast<std::size_t>(map.side)) {}
 
   void add_row(std::int64_t row, int sign) {
@@ -91,7 +91,7 @@ class RowOfPlanes {
       const std::int64_t first = last - 2 * half_, middle = last - half_;
       if (first < 0) continue;
       if (square.missing == 0)
-        planes[middle] = plane_of(square, row, middle, half_, whole_.unit(), map_.pixel);
+        planes[middle] = fit_plane(square, row, middle, half_, whole_.unit(), map_.pixel);
       square.add(columns_[static_cast<std::size_t>(first)], first, -1);
     }
   }
@@ -113,7 +113,7 @@ std::vector<FootprintPlane> footprint_planes(const HeightMap& map, int half) {
   // A band of rows begins with a whole footprint of rows, which costs at most what four bands cost.
   const std::int64_t band = std::max<std::int64_t>(64, footprint / 4);
   parallel_for(0, rows > 0 ? (rows + band - 1) / band : 0, [&](std::int64_t b) {
-    RowOfPlanes squares(map, whole, half);
+    PlaneRow squares(map, whole, half);
     const std::int64_t first = b * band, end = std::min(first + band, rows);
     for (std::int64_t row = first; row + 1 < first + footprint; ++row) squares.add_row(row, 1);
     for (std::int64_t top = first; top < end; ++top) {

@@ -6,12 +6,12 @@ namespace astrolith {
 namespace {
 
 // Joins those of the 3 #F corners that belong to one fan of triangles around a vertex.
-DisjointSets fans_of(const TriangleMesh& mesh) {
+DisjointSets join_fans(const TriangleMesh& mesh) {
   DisjointSets fans(3 * mesh.triangles.size());
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
     if (edge.size() != 2 || edge[0].forward == edge[1].forward) return;
-    fans.unite(edge[0].corner_of_low(), edge[1].corner_of_low());
-    fans.unite(edge[0].corner_of_high(), edge[1].corner_of_high());
+    fans.unite(edge[0].low_corner(), edge[1].low_corner());
+    fans.unite(edge[0].high_corner(), edge[1].high_corner());
   });
   return fans;
 }
@@ -22,14 +22,14 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh) {
   check_indices(mesh);
   HalfEdgeMesh result;
   result.copies.assign(mesh.vertices.size(), 0);
-  DisjointSets fans = fans_of(mesh);
-  std::vector<OpenMesh::VertexHandle> vertex_of_fan(3 * mesh.triangles.size());
+  DisjointSets fans = join_fans(mesh);
+  std::vector<OpenMesh::VertexHandle> fan_vertex(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
     if (is_degenerate(triangle)) continue;
     std::array<OpenMesh::VertexHandle, 3> corners;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      OpenMesh::VertexHandle& vertex = vertex_of_fan[fans.find(3 * t + k)];
+      OpenMesh::VertexHandle& vertex = fan_vertex[fans.find(3 * t + k)];
       if (!vertex.is_valid()) {
         const Vec3d& p = mesh.vertices[triangle[k]];
         vertex = result.half_edges.add_vertex({p.x, p.y, p.z});

@@ -28,7 +28,7 @@ class PointGrid {
     // The key of a cell has 21 bits for each axis, so that cells have a smallest size.
     cell_ = std::max(radius, box_.diagonal() / (kMostCells - 2));
     sorted_.reserve(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) sorted_.emplace_back(key(cell_of(points[i])), i);
+    for (std::uint32_t i = 0; i < points.size(); ++i) sorted_.emplace_back(key(cell_at(points[i])), i);
     std::sort(sorted_.begin(), sorted_.end());
   }
 
@@ -36,7 +36,7 @@ class PointGrid {
   // that depends on the points and the radius alone.
   template <typename Visit>
   void for_each_neighbour(std::uint32_t i, const Visit& visit) const {
-    const Cell center = cell_of(points_[i]);
+    const Cell center = cell_at(points_[i]);
     for (std::int64_t x = center.x - 1; x <= center.x + 1; ++x) {
       for (std::int64_t y = center.y - 1; y <= center.y + 1; ++y) {
         // The three cells along z have consecutive keys.
@@ -56,7 +56,7 @@ class PointGrid {
   struct Cell {
     std::int64_t x, y, z;
   };
-  Cell cell_of(const Vec3d& p) const {
+  Cell cell_at(const Vec3d& p) const {
     const auto along = [&](double value, double low) {
       // At least 1, so that lower neighbours have numbers of at least 0.
       return static_cast<std::int64_t>(std::floor((value - low) / cell_)) + 1;

@@ -51,7 +51,7 @@ struct Ring {
   }
 };
 
-Ring ring_of(const HalfEdges& mesh, OpenMesh::VertexHandle v) {
+Ring find_ring(const HalfEdges& mesh, OpenMesh::VertexHandle v) {
   Ring ring;
   const Vec3d p = position(mesh, v);
   for (const auto h : mesh.voh_range(v)) {
@@ -121,7 +121,7 @@ VertexCurvature vertex_curvature(const TriangleMesh& mesh) {
         const OpenMesh::VertexHandle v(static_cast<int>(i));
         const std::size_t o = cut.original[static_cast<std::size_t>(i)];
         if (cut.copies[o] != 1 || half_edges.is_boundary(v)) return;
-        const Ring ring = ring_of(half_edges, v);
+        const Ring ring = find_ring(half_edges, v);
         const double size = norm(ring.laplacian) / (4 * ring.area);
         if (!(ring.area > 0) || !std::isfinite(size)) return;
         result.area[o] = ring.area;

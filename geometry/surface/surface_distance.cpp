@@ -40,12 +40,12 @@ SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh
   return surface_distance(a, SurfaceTree(a), b, SurfaceTree(b), samples, seed, progress);
 }
 
-SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
-                                       const TriangleMesh& b, const SurfaceTree& tree_of_b,
-                                       std::int64_t samples, std::uint64_t seed, const Progress& progress) {
+SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_a,
+                                       const TriangleMesh& b, const SurfaceTree& tree_b, std::int64_t samples,
+                                       std::uint64_t seed, const Progress& progress) {
   if (samples <= 0) throw InputError("surface distance: needs at least one sample");
-  std::vector<double> both = distances(a, tree_of_b, samples, seed, progress);
-  const std::vector<double> back = distances(b, tree_of_a, samples, seed, progress);
+  std::vector<double> both = distances(a, tree_b, samples, seed, progress);
+  const std::vector<double> back = distances(b, tree_a, samples, seed, progress);
   SurfaceDistanceReport report;
   report.from_a_to_b = figures(both);
   report.from_b_to_a = figures(back);

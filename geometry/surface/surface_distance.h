@@ -28,9 +28,8 @@ SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh
                                        std::uint64_t seed, const Progress& progress = {});
 
 // The distance between two meshes whose trees have been built before.
-SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
-                                       const TriangleMesh& b, const SurfaceTree& tree_of_b,
-                                       std::int64_t samples, std::uint64_t seed,
-                                       const Progress& progress = {});
+SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_a,
+                                       const TriangleMesh& b, const SurfaceTree& tree_b, std::int64_t samples,
+                                       std::uint64_t seed, const Progress& progress = {});
 
 }  // namespace astrolith

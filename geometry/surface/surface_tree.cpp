@@ -47,7 +47,7 @@ ClosestOnTriangle closest_on_boundary(const Vec3d& p, const Vec3d& a, const Vec3
   return nearer(nearer(ab, bc), ca);
 }
 
-Box box_of(const TriangleMesh& mesh, std::size_t triangle, double margin) {
+Box triangle_box(const TriangleMesh& mesh, std::size_t triangle, double margin) {
   Box box;
   for (const std::uint32_t v : mesh.triangles[triangle]) box.extend(mesh.vertices[v]);
   const Vec3d around{margin, margin, margin};
@@ -67,7 +67,7 @@ double triangles_at_a_place(const TriangleMesh& mesh) {
   }
   std::size_t held = 0;
   for (std::size_t t = 0; t < count; t += step) {
-    const Box box = box_of(mesh, t, margin);
+    const Box box = triangle_box(mesh, t, margin);
     for (const Vec3d& p : places) held += boxes_touch(box, {p, p}) ? step : 0;
   }
   return static_cast<double>(held) / static_cast<double>(kPlaces);

@@ -40,7 +40,7 @@ void train_classifier_file(const std::vector<std::string>& folders, const std::s
     const std::vector<std::filesystem::path> paths(folders.begin(), folders.end());
     const LabelledFiles files = find_classes(paths);
     const FeatureTable table =
-        features_of_files(files.files, features, read_mended_surface, state.progress("describe"));
+        read_features(files.files, features, read_mended_surface, state.progress("describe"));
     if (!table.failures.empty()) throw InputError(table.failures.front());
     const ShapeClassifier classifier = train_classifier(labelled(files, table), features, training);
     if (state.stopped()) throw WorkError("stopped before the classifier was written");

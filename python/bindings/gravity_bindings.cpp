@@ -48,9 +48,9 @@ GravityPlaces places_of(const GravityArguments& arguments, const TriangleMesh& m
 
 GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
   const StageProgress stage = [&](const std::string& name) { return state.progress(name); };
-  const GravityBody body = arguments.mesh ? body_of_mesh(*arguments.mesh, arguments.unit, arguments.name)
-                                          : body_of_recipe(loaded_recipe(arguments.json, arguments.name),
-                                                           arguments.resolution, arguments.name, stage);
+  const GravityBody body = arguments.mesh ? make_mesh_body(*arguments.mesh, arguments.unit, arguments.name)
+                                          : make_recipe_body(loaded_recipe(arguments.json, arguments.name),
+                                                             arguments.resolution, arguments.name, stage);
   const ComputedGravity made =
       compute_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
   nlohmann::ordered_json figures = made.figures;
@@ -59,7 +59,7 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
     figures["sites"] =
         sites_json(find_landing_sites(body, column.values, arguments.sites, stage("sites")), body);
   }
-  GravityTable table{rows_of(made.columns), {}, figures.dump()};
+  GravityTable table{interleave(made.columns), {}, figures.dump()};
   for (const GravityColumn& column : made.columns) table.names.push_back(column.name);
   return table;
 }

@@ -161,10 +161,10 @@ nb::typed<nb::dict, nb::str, nb::any> craters(const fs::path& name, const Rows<d
       });
   const std::size_t count = found.features.size();
   nb::dict columns;
-  for (std::size_t k = 0; k < columns_of({}).size(); ++k) {
+  for (std::size_t k = 0; k < feature_columns({}).size(); ++k) {
     std::vector<double> values;
-    for (const FoundFeature& f : found.features) values.push_back(columns_of(f)[k].second);
-    columns[nb::str(columns_of({})[k].first)] = array_of<double>(std::move(values), {count});
+    for (const FoundFeature& f : found.features) values.push_back(feature_columns(f)[k].second);
+    columns[nb::str(feature_columns({})[k].first)] = array_of<double>(std::move(values), {count});
   }
   nb::typed<nb::dict, nb::str, nb::any> result;
   result["figures"] = found_json(found).dump();
@@ -212,7 +212,7 @@ VariedRecipe vary(const std::string& json, const fs::path& name, double delta, s
   const TriangleMesh like = target ? *target : mesh_for_comparison(recipe);
   const SimilarityMeasure similarity = like.triangles.empty() ? SimilarityMeasure() : similarity_with(like);
   const Variation variation = find_variation(recipe, similarity, delta, seed, progress);
-  return {recipe_to_json(variation.recipe), figures_of(variation).dump()};
+  return {recipe_to_json(variation.recipe), to_json(variation).dump()};
 }
 
 std::pair<std::string, std::string> vary_in_job(const std::string& json, const fs::path& name, double delta,

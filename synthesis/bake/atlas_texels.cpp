@@ -63,7 +63,7 @@ AtlasTexels::AtlasTexels(const TexturedMesh& textured) : textured_(textured) {
   }
   // A triangle belongs to the tiles that its box reaches, with their borders.
   const auto for_each_tile = [&](std::uint32_t f, const auto& use) {
-    const ChartTiles& chart = charts[atlas.chart_of[f]];
+    const ChartTiles& chart = charts[atlas.triangle_chart[f]];
     const TexelRange range = covered_texels(texel_corners(atlas, f));
     const auto tile_at = [](int texel, int begin, int count) {
       return std::clamp((texel - begin) / TexelTile::kSide, 0, count - 1);
@@ -110,7 +110,7 @@ void AtlasTexels::draw(std::uint32_t triangle, const TexelTile& tile, std::span<
       if (std::min({weights[0], weights[1], weights[2]}) < 0.0) continue;
       Vec3d position, normal, tangent;
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t w = corners[k], v = textured_.atlas.coordinates.vertex_of[w];
+        const std::uint32_t w = corners[k], v = textured_.atlas.coordinates.mesh_vertex[w];
         const VertexTangent& t = textured_.tangents[w];
         position += weights[k] * textured_.mesh.vertices[v];
         normal += weights[k] * textured_.mesh.normals[v];

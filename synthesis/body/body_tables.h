@@ -74,8 +74,8 @@ struct ReachingMetaballs {
   std::vector<MetaballSphere<float>> spheres;
   std::vector<std::uint32_t> first{0};  // one offset per leaf into `spheres`, and the total
 
-  void add(std::span<const MetaballSphere<float>> of_leaf) {
-    spheres.insert(spheres.end(), of_leaf.begin(), of_leaf.end());
+  void add(std::span<const MetaballSphere<float>> leaf_spheres) {
+    spheres.insert(spheres.end(), leaf_spheres.begin(), leaf_spheres.end());
     first.push_back(static_cast<std::uint32_t>(spheres.size()));
   }
   LeafLists lists() const { return {spheres.data(), first.data()}; }

@@ -196,22 +196,23 @@ std::optional<LevelExpansion> expand_level(const MetaballsView& metaballs, const
   const double level = (added.value - subtracted.value) * inverse_m - double{body.log_iso};
   const Vec3d gradient = inverse_m * (added.gradient - subtracted.gradient);
   const double kinds = subtracts ? 2.0 : 1.0;
-  const double of_sums = kKernelEpsilon + kSumEpsilon * double(metaballs.spheres.size());
-  const double rounding = kinds * (5e-5 + of_sums + 2e-6 * std::fabs(double{body.m_a})) * inverse_m +
-                          (1e-6 * farthest + of_sums * radius) * roughness + 1e-6 * std::fabs(level);
+  const double sum_rounding = kKernelEpsilon + kSumEpsilon * double(metaballs.spheres.size());
+  const double rounding = kinds * (5e-5 + sum_rounding + 2e-6 * std::fabs(double{body.m_a})) * inverse_m +
+                          (1e-6 * farthest + sum_rounding * radius) * roughness + 1e-6 * std::fabs(level);
   // A kernel that ends in the box changes the gradient by at most its share times the difference of slopes.
   const auto bent = [&](const LogSum& sum) {
     return sum.edge_share * (sum.edge_slope + sum.roughness) * inverse_m;
   };
   const auto to = [](double v) { return static_cast<float>(v); };
-  return LevelExpansion{center,
-                        to(level),
-                        to_float(gradient),
-                        to((added.below + subtracted.above) * inverse_m),
-                        to((added.above + subtracted.below) * inverse_m),
-                        to(rounding + shares * inverse_m),
-                        to((added.turn + subtracted.turn) * inverse_m),
-                        to(of_sums * roughness + floor_share * roughness + bent(added) + bent(subtracted))};
+  return LevelExpansion{
+      center,
+      to(level),
+      to_float(gradient),
+      to((added.below + subtracted.above) * inverse_m),
+      to((added.above + subtracted.below) * inverse_m),
+      to(rounding + shares * inverse_m),
+      to((added.turn + subtracted.turn) * inverse_m),
+      to(sum_rounding * roughness + floor_share * roughness + bent(added) + bent(subtracted))};
 }
 
 ExpansionBounds bound_expansion(const LevelExpansion& e, const MetaballParameters<float>& body,

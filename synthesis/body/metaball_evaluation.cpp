@@ -67,9 +67,9 @@ auto make_adder(Kernel kernel) {
 
 // The four sums of the subtractive spheres at up to this many points. They stay in the first cache over all
 // spheres.
-constexpr int kPointsAtOnce = 256;
 struct SubtractedSums {
-  std::array<float, kPointsAtOnce> kernel, wx, wy, wz;
+  static constexpr int kBatch = 256;
+  std::array<float, kBatch> kernel, wx, wy, wz;
 };
 
 // Replaces the sums of the spheres that add by the net sums.
@@ -120,8 +120,8 @@ void evaluate_metaballs(const MetaballsView& metaballs, int n, const float* x, c
   const std::vector<MetaballSphere<float>> subtractive = as_adding(metaballs.subtractive());
   const auto add = make_adder(body.compact_kernel.kernel);
   const auto finish = body.compact_kernel.kernel == Kernel::kGaussian ? finish_gaussians : finish_compact;
-  for (int begin = 0; begin < n; begin += kPointsAtOnce) {
-    const int size = std::min(kPointsAtOnce, n - begin);
+  for (int begin = 0; begin < n; begin += SubtractedSums::kBatch) {
+    const int size = std::min(SubtractedSums::kBatch, n - begin);
     float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;
     add(body, adding.data(), adding.size(), size, x + begin, y + begin, z + begin, s, gx, gy, gz);
     if (!subtractive.empty()) {

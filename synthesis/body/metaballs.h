@@ -156,8 +156,8 @@ template <typename T>
 ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& subtracted) {
   const T part = T(1) / (T(1) + subtracted.kernel);
   const T kernel = added.kernel * part;
-  const auto net = [&](T of_added, T of_subtracted) {
-    return of_added * part - of_subtracted * part * kernel;
+  const auto net = [&](T added_term, T subtracted_term) {
+    return added_term * part - subtracted_term * part * kernel;
   };
   return {kernel,
           {net(added.weighted.x, subtracted.weighted.x), net(added.weighted.y, subtracted.weighted.y),

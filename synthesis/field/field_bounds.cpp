@@ -148,7 +148,7 @@ Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const
                           scratch_for(model, no_metaballs).kept);
 }
 
-DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger) {
+DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& larger_box_spots) {
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const FieldLayer& layer = model.layers[i];
@@ -157,7 +157,7 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
     const Box at = model.tables.in_layer_frame(layer, box);
     spots.resize(model.layers.size());
     spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(at, layer.join.displaced),
-                            find_spots(of_larger, i));
+                            find_spots(larger_box_spots, i));
   }
   return spots;
 }

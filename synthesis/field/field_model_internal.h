@@ -92,9 +92,9 @@ FieldBelow field_below(const FieldModel& model, std::size_t layers, const NoiseF
 // The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
 const LayerNoise& find_noise(const FieldModel& model, const FieldLayer& layer);
 
-// The spots that reach a box. They are chosen from the spots of a larger box, or drawn where `of_larger` is
-// empty.
-DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger);
+// The spots that reach a box. They are chosen from the spots of a larger box, or drawn where
+// `larger_box_spots` is empty.
+DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& larger_box_spots);
 
 // The spots of layer number `layer`; null where none were drawn.
 inline const SpotImpulses* find_spots(const DrawnSpots& spots, std::size_t layer) {

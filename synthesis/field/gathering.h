@@ -90,14 +90,14 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
   const std::uint64_t begin = share.begin(all), end = share.end(all);
   std::uint64_t at = 0;  // number of the next cell
   const auto visit_brick = [&](int tx, int ty, int tz) {
-    const auto of_brick = [&](int a, int brick) {
+    const auto brick_span = [&](int a, int brick) {
       return GaborCellSpan{std::max(cells[a].first, brick * kBrickCells),
                            std::min(cells[a].last, brick * kBrickCells + kBrickCells - 1)};
     };
-    const GaborCellSpan xs = of_brick(0, tx), ys = of_brick(1, ty), zs = of_brick(2, tz);
-    const std::uint64_t of_this = length(xs) * length(ys) * length(zs);
-    if (at + of_this <= begin || at >= end) {
-      at += of_this;
+    const GaborCellSpan xs = brick_span(0, tx), ys = brick_span(1, ty), zs = brick_span(2, tz);
+    const std::uint64_t brick_cells = length(xs) * length(ys) * length(zs);
+    if (at + brick_cells <= begin || at >= end) {
+      at += brick_cells;
       return;
     }
     for (int z = zs.first; z <= zs.last; ++z) {

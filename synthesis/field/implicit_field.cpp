@@ -26,10 +26,10 @@ double FieldBlock::list_bytes() const {
   std::size_t bytes = metaballs_.spheres.capacity() * sizeof(MetaballSphere<float>) +
                       metaballs_.first.capacity() * sizeof(std::uint32_t) +
                       spots_.capacity() * sizeof(DrawnSpots::value_type);
-  for (const auto& of_layer : spots_) {
-    if (of_layer == nullptr) continue;
-    for (const std::vector<SpotImpulse>& of_kind : *of_layer) {
-      bytes += sizeof(std::vector<SpotImpulse>) + of_kind.capacity() * sizeof(SpotImpulse);
+  for (const auto& layer : spots_) {
+    if (layer == nullptr) continue;
+    for (const std::vector<SpotImpulse>& impulses : *layer) {
+      bytes += sizeof(std::vector<SpotImpulse>) + impulses.capacity() * sizeof(SpotImpulse);
     }
   }
   return static_cast<double>(bytes);

@@ -7,14 +7,14 @@ template <class Kind>
 LayerMaker make_maker(const Kind& layer, const LayerSource& source, ArrayStore& arrays) {
   if constexpr (Kind::kTraits.on_surface) {
     return [&layer, prepared = prepare(layer, source, arrays), source](const LayerSite& site,
-                                                                       ArrayStore& of_site) {
-      const auto noise = placed(layer, prepared, source, site, of_site);
+                                                                       ArrayStore& site_arrays) {
+      const auto noise = placed(layer, prepared, source, site, site_arrays);
       static_assert(noise.kTraits.on_surface && noise.kTraits.lifts <= Kind::kTraits.on_layers);
       return LayerNoise(noise);
     };
   } else {
-    return [&layer, source](const LayerSite& site, ArrayStore& of_site) {
-      const auto noise = make_noise(layer, source.recipe.seed, source.number, site.frame, of_site);
+    return [&layer, source](const LayerSite& site, ArrayStore& site_arrays) {
+      const auto noise = make_noise(layer, source.recipe.seed, source.number, site.frame, site_arrays);
       static_assert(!noise.kTraits.on_surface);
       return LayerNoise(noise);
     };
@@ -23,9 +23,9 @@ LayerMaker make_maker(const Kind& layer, const LayerSource& source, ArrayStore& 
 
 // Gabor noise has nothing that all sites share.
 LayerMaker make_maker(const GaborLayer& layer, const LayerSource& source, ArrayStore&) {
-  return [&layer, source](const LayerSite& site, ArrayStore& of_site) {
+  return [&layer, source](const LayerSite& site, ArrayStore& site_arrays) {
     return LayerNoise(
-        make_noise(layer, source.recipe.seed, source.number, site.frame, site.body_side, of_site));
+        make_noise(layer, source.recipe.seed, source.number, site.frame, site.body_side, site_arrays));
   };
 }
 

@@ -13,9 +13,6 @@
 namespace astrolith {
 namespace {
 
-constexpr int kWeightChunk = 256;
-using Chunk = std::array<float, kWeightChunk>;
-
 // The spheres that may be nearest to some point of the box. Leaving out all other spheres changes no bit.
 void nearest_candidates(const WeightSpheres& set, const ArrayView& arrays, const Box& box,
                         std::vector<WeightSphere>& out) {
@@ -109,16 +106,17 @@ void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int 
                         const float* y, const float* z, float* height) {
   if (weight.others.spheres.count == 0) return;
   thread_local std::vector<WeightSphere> candidates;
-  Chunk group, others;
-  for (int begin = 0; begin < n; begin += kWeightChunk) {
-    const int size = std::min(kWeightChunk, n - begin);
+  constexpr int kChunk = 256;
+  std::array<float, kChunk> group, others;
+  for (int begin = 0; begin < n; begin += kChunk) {
+    const int size = std::min(kChunk, n - begin);
     const float *px = x + begin, *py = y + begin, *pz = z + begin;
     Box box;
     for (int i = 0; i < size; ++i) box.extend({double{px[i]}, double{py[i]}, double{pz[i]}});
-    for (const bool of_group : {true, false}) {
-      Chunk& distance = of_group ? group : others;
+    for (const bool to_group : {true, false}) {
+      std::array<float, kChunk>& distance = to_group ? group : others;
       distance.fill(std::numeric_limits<float>::max());
-      nearest_candidates(of_group ? weight.group : weight.others, arrays, box, candidates);
+      nearest_candidates(to_group ? weight.group : weight.others, arrays, box, candidates);
       for (const WeightSphere& s : candidates) {
         take_nearer(s.center, s.radius, size, px, py, pz, distance.data());
       }

@@ -78,8 +78,8 @@ void PatchNoises::make_patch_warp() {
   constexpr float kEverywhere = std::numeric_limits<float>::max();
   CoordinateWarp warp = first.warp;
   for (ArrayRange<NoiseOctave>& octaves : warp.octaves) {
-    const std::span<const NoiseOctave> of_body = model.arrays.view().span(octaves);
-    octaves = model.arrays.add(local_octaves(Noise::kSimplex, of_body, center));
+    const std::span<const NoiseOctave> body_octaves = model.arrays.view().span(octaves);
+    octaves = model.arrays.add(local_octaves(Noise::kSimplex, body_octaves, center));
   }
   warp.low = {-kEverywhere, -kEverywhere, -kEverywhere};
   warp.high = {kEverywhere, kEverywhere, kEverywhere};

@@ -75,7 +75,7 @@ BoulderTone make_tone(const BoulderAlbedo& albedo, const PlacedBoulder& boulder,
   return {true, encoded(light_of_albedo * albedo.normal * albedo.color), {gain, gain, gain}};
 }
 
-double stated_height_of(const Layer& layer) {
+double find_stated_height(const Layer& layer) {
   return std::visit(
       []<class Kind>(const Kind& l) -> double {
         if constexpr (requires { l.stated_height(); }) {
@@ -112,7 +112,7 @@ SurfaceColors::SurfaceColors(const Recipe& recipe, const std::string& name, cons
     }
     const LayerUse* const use = find_use(layer);
     if (!albedo_ || use == nullptr || !use->albedo) continue;
-    paints_.noises.push_back(make_tone(*use->albedo, stated_height_of(layer), scale));
+    paints_.noises.push_back(make_tone(*use->albedo, find_stated_height(layer), scale));
     paints_.noises.back().layer = number;
   }
   for (LayerPaint& paint : paints_.images) paint.arrays = textures_.view();

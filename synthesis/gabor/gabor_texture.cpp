@@ -43,19 +43,17 @@ struct TextureSquare {
 // An impulse therefore costs a few profile values for each column and row of a square, and two fma for each
 // pixel. The positions of many impulses are drawn at once, one in each lane of a vector. The profiles of a
 // kernel fill whole vectors: as many lanes for its columns as for its rows.
-//
-// The impulses that are drawn at once.
-constexpr std::size_t kDrawnAtOnce = 256;
 
 // Impulses by the hash of their cell, the cell and their number in the cell; and what follows from these.
 struct PlaneImpulses {
+  static constexpr std::size_t kBatch = 256;  // impulses that are drawn at once
   std::size_t count = 0;
-  std::array<std::uint32_t, kDrawnAtOnce> cell_hash, number;
-  std::array<int, kDrawnAtOnce> cell_x, cell_y;
+  std::array<std::uint32_t, kBatch> cell_hash, number;
+  std::array<int, kBatch> cell_x, cell_y;
 
-  std::array<float, kDrawnAtOnce> offset_x, offset_y;  // of the centre of the square's first pixel, pixels
-  std::array<int, kDrawnAtOnce> begin_x, end_x, begin_y, end_y;  // the pixels that the kernel reaches
-  std::array<float, kDrawnAtOnce> phase, lobe;                   // uniform in [0, 1)
+  std::array<float, kBatch> offset_x, offset_y;  // of the centre of the square's first pixel, pixels
+  std::array<int, kBatch> begin_x, end_x, begin_y, end_y;  // the pixels that the kernel reaches
+  std::array<float, kBatch> phase, lobe;                   // uniform in [0, 1)
 };
 
 // A uniform number in [0, 1) as unit_float() gives it.
@@ -167,7 +165,7 @@ void add_impulses(const PlaneBand& band, PlaneImpulses& drawn, TextureSquare& sq
   place_along(n, 1, band.cell_y, band.reach, square.y, d.cell_hash.data(), d.number.data(), d.cell_y.data(),
               d.offset_y.data(), d.begin_y.data(), d.end_y.data());
   draw_lobes(n, d.cell_hash.data(), d.number.data(), d.phase.data(), d.lobe.data());
-  std::array<PlaneImpulse, kDrawnAtOnce> reaching;
+  std::array<PlaneImpulse, PlaneImpulses::kBatch> reaching;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) {
     if (d.begin_x[i] >= d.end_x[i] || d.begin_y[i] >= d.end_y[i]) continue;
@@ -205,7 +203,7 @@ void add_band(const PlaneBand& band, TextureSquare& square) {
         drawn.number[i] = static_cast<std::uint32_t>(j);
         drawn.cell_x[i] = cx;
         drawn.cell_y[i] = cy;
-        if (drawn.count == kDrawnAtOnce) add_impulses(band, drawn, square);
+        if (drawn.count == PlaneImpulses::kBatch) add_impulses(band, drawn, square);
       }
     }
   }

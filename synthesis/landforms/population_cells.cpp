@@ -18,7 +18,6 @@ constexpr double kLeastPerCell = 4.0;       // cells of rare landforms are made 
 constexpr double kCellInDiameters = 4.0;    // the narrowest cells of a class, in its greatest diameter
 constexpr double kShellInCells = 0.25;      // half the thickness of the shell whose points are projected
 constexpr double kMostClassCells = 0x1p26;  // cells that one class looks through
-constexpr std::int64_t kCellsAtOnce = 4096;
 
 // A class of sizes, upper / 2 .. upper, and its lattice. The last class may begin below the least diameter.
 // What it draws there is dropped, so that a lower least diameter changes no landform above it.
@@ -117,12 +116,13 @@ class CellDrawing {
     if (!valid(box)) return;
     const CellRange cells(box, size.cell);
     if (cells.total() > kMostClassCells) fail(where, "look through more cells than 6e7");
+    constexpr std::int64_t kBatch = 4096;
     const auto total = static_cast<std::int64_t>(cells.total());
-    std::vector<std::vector<DrawnLandform>> drawn(static_cast<std::size_t>(std::min(total, kCellsAtOnce)));
-    for (std::int64_t first = 0; first < total; first += kCellsAtOnce) {
+    std::vector<std::vector<DrawnLandform>> drawn(static_cast<std::size_t>(std::min(total, kBatch)));
+    for (std::int64_t first = 0; first < total; first += kBatch) {
       if (!report(places_.progress, 0.0, "landforms"))
         throw WorkError("landforms: stopped before all were drawn");
-      const std::int64_t count = std::min(kCellsAtOnce, total - first);
+      const std::int64_t count = std::min(kBatch, total - first);
       parallel_for(0, count, [&](std::int64_t i) {
         auto& mine = drawn[static_cast<std::size_t>(i)];
         mine.clear();

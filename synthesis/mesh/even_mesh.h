@@ -323,7 +323,7 @@ template <BlockField Field>
 EvenStatistics even_mesh(const Field& field, double step, RecordedMesh& mesh, const Progress& progress) {
   EvenStatistics statistics;
   if (mesh.triangles.empty()) return statistics;
-  statistics.before = quality_of(mesh.vertices, mesh.triangles);
+  statistics.before = mesh_quality(mesh.vertices, mesh.triangles);
   const MeshRelaxation relaxation(mesh.vertices.size(), mesh.triangles);
   SurfaceVertices even{mesh.vertices, std::vector<float>(mesh.vertices.size())};
   statistics.evaluations = move_along_surface(
@@ -335,7 +335,7 @@ EvenStatistics even_mesh(const Field& field, double step, RecordedMesh& mesh, co
   }
   measure_moves(mesh.vertices, even, statistics);
   mesh.vertices = std::move(even.vertices);
-  statistics.after = quality_of(mesh.vertices, mesh.triangles);
+  statistics.after = mesh_quality(mesh.vertices, mesh.triangles);
   return statistics;
 }
 

@@ -73,12 +73,12 @@ ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::
 }
 
 ProbedSurface::Point ProbedSurface::point(int index) const {
-  constexpr double kGolden = 0.6180339887498949, kRootOfTwo = 0.4142135623730951,
-                   kRootOfThree = 0.7320508075688772;
+  constexpr double kGolden = 0.6180339887498949, kSqrtTwo = 0.4142135623730951,
+                   kSqrtThree = 0.7320508075688772;
   const auto found = std::upper_bound(areas_.begin(), areas_.end(), even(index, kGolden) * areas_.back());
   const auto i = static_cast<std::size_t>(std::min(found, areas_.end() - 1) - areas_.begin());
   const Corners t = triangle_corners(mesh_, mesh_.triangles[i]);
-  double u = even(index, kRootOfTwo), v = even(index, kRootOfThree);
+  double u = even(index, kSqrtTwo), v = even(index, kSqrtThree);
   if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
   const Vec3d normal = t.doubled_area();
   return {t.a + u * (t.b - t.a) + v * (t.c - t.a), (1.0 / norm(normal)) * normal};

@@ -11,7 +11,6 @@ namespace astrolith {
 namespace {
 
 constexpr std::uint32_t kWarpStream = 0x77617270u;  // far from the stream numbers of the octaves of layers
-constexpr int kWarpChunk = 256;
 
 ASTROLITH_SIMD_CLONES void clamp_all(int n, const float* __restrict p, float low, float high,
                                      float* __restrict clamped) {
@@ -47,9 +46,10 @@ CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const 
 
 void warp_points(const CoordinateWarp& warp, const ArrayView& arrays, int n, const float* x, const float* y,
                  const float* z, float* wx, float* wy, float* wz) {
-  std::array<float, kWarpChunk> cx, cy, cz;
-  for (int begin = 0; begin < n; begin += kWarpChunk) {
-    const int size = std::min(kWarpChunk, n - begin);
+  constexpr int kBatch = 256;
+  std::array<float, kBatch> cx, cy, cz;
+  for (int begin = 0; begin < n; begin += kBatch) {
+    const int size = std::min(kBatch, n - begin);
     clamp_all(size, x + begin, warp.low.x, warp.high.x, cx.data());
     clamp_all(size, y + begin, warp.low.y, warp.high.y, cy.data());
     clamp_all(size, z + begin, warp.low.z, warp.high.z, cz.data());

@@ -10,10 +10,11 @@
 #include "numerics/scalar_math.h"
 
 namespace astrolith {
+namespace fractal_noise {
 namespace {
 
-constexpr int kFractalChunk = 256;  // ten arrays of this many floats stay in the first cache
-using Chunk = std::array<float, kFractalChunk>;
+constexpr int kBatch = 256;  // ten arrays of this many floats stay in the first cache
+using Batch = std::array<float, kBatch>;
 
 ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, float high, float scale,
                                  float bias, float* __restrict q) {
@@ -21,11 +22,7 @@ ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, fl
   for (int i = 0; i < n; ++i) q[i] = placed_coordinate(p[i], low, high, scale, bias);
 }
 
-double farthest_coordinate(double low, double high, double scale, double bias) {
-  return std::max(std::fabs(scale * low + bias), std::fabs(scale * high + bias));
-}
-
-// Writes the sum of the octaves at n <= kFractalChunk arguments of the noise.
+// Writes the sum of the octaves at n <= kBatch arguments of the noise.
 void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves, int n, const float* x,
                  const float* y, const float* z, float* height) {
   std::fill(height, height + n, 0.0f);
@@ -33,7 +30,7 @@ void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves
     for (const NoiseOctave& o : octaves) add_octave(noise.noise, o, n, x, y, z, height);
     return;
   }
-  Chunk dx{}, dy{}, dz{};
+  Batch dx{}, dy{}, dz{};
   for (const NoiseOctave& o : octaves) {
     add_modulated_octave(noise.noise, o, noise.gradient_modulation, n, x, y, z, dx.data(), dy.data(),
                          dz.data(), height);
@@ -44,9 +41,9 @@ void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves
 void evaluate_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves,
                       const ArrayView& arrays, int count, const float* x, const float* y, const float* z,
                       float* height) {
-  for (int begin = 0; begin < count; begin += kFractalChunk) {
-    const int n = std::min(kFractalChunk, count - begin);
-    Chunk wx, wy, wz, qx, qy, qz;
+  for (int begin = 0; begin < count; begin += kBatch) {
+    const int n = std::min(kBatch, count - begin);
+    Batch wx, wy, wz, qx, qy, qz;
     const float *px = x + begin, *py = y + begin, *pz = z + begin;
     if (noise.warped) {
       warp_points(noise.warp, arrays, n, px, py, pz, wx.data(), wy.data(), wz.data());
@@ -59,6 +56,15 @@ void evaluate_octaves(const FractalNoise& noise, std::span<const NoiseOctave> oc
     place(n, pz, noise.low.z, noise.high.z, noise.scale.z, noise.bias.z, qz.data());
     sum_octaves(noise, octaves, n, qx.data(), qy.data(), qz.data(), height + begin);
   }
+}
+
+}  // namespace
+}  // namespace fractal_noise
+
+namespace {
+
+double farthest_coordinate(double low, double high, double scale, double bias) {
+  return std::max(std::fabs(scale * low + bias), std::fabs(scale * high + bias));
 }
 
 // The argument of the noise at a point.
@@ -114,7 +120,7 @@ FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer
 
 void evaluate_heights(const FractalNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
-  evaluate_octaves(noise, arrays.span(noise.octaves), arrays, count, x, y, z, height);
+  fractal_noise::evaluate_octaves(noise, arrays.span(noise.octaves), arrays, count, x, y, z, height);
 }
 
 namespace {
@@ -144,7 +150,8 @@ FractalNoise local_form(const FractalNoise& noise, const Vec3d& origin, ArraySto
 
 void evaluate_local_heights(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin,
                             int count, const float* x, const float* y, const float* z, float* height) {
-  evaluate_octaves(unplaced(noise), octaves_at(noise, arrays, origin), arrays, count, x, y, z, height);
+  fractal_noise::evaluate_octaves(unplaced(noise), octaves_at(noise, arrays, origin), arrays, count, x, y, z,
+                                  height);
 }
 
 }  // namespace astrolith

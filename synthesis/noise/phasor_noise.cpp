@@ -7,9 +7,6 @@
 namespace astrolith {
 namespace {
 
-constexpr int kPhasorChunk = 128;
-using PhasorArray = std::array<float, kPhasorChunk>;
-
 // Adds one impulse to the sums at n points, in cells. The impulse lies (dx, dy, dz) cells away from the cell
 // of each point. Six of seven impulses around a point do not reach it, so that runs of points that an impulse
 // does not reach are passed over.
@@ -73,9 +70,10 @@ PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_i
 
 void evaluate_phases(const PhasorNoise& n, int count, const float* x, const float* y, const float* z,
                      float* turns) {
-  PhasorArray px{}, py{}, pz{}, real, imaginary;
-  for (int begin = 0; begin < count; begin += kPhasorChunk) {
-    const int size = std::min(kPhasorChunk, count - begin);
+  constexpr int kBatch = 128;
+  std::array<float, kBatch> px{}, py{}, pz{}, real, imaginary;
+  for (int begin = 0; begin < count; begin += kBatch) {
+    const int size = std::min(kBatch, count - begin);
     for (int i = 0; i < size; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const Vec3f p = n.in_cells({x[begin + i], y[begin + i], z[begin + i]});

@@ -17,18 +17,16 @@
 namespace astrolith {
 namespace {
 
-constexpr int kPhaseChunk = 128;  // the windows of eight corners stay in the first cache
-using PhaseArray = std::array<float, kPhaseChunk>;
-
 constexpr double kMostTurns = 262144.0;  // 2^18, where a float holds five bits of a turn
 constexpr double kClip = 6.0;
 constexpr std::uint32_t kWaveStream = 0x77617665u;
 
-// The windows and hashes of the eight corners around each point of a chunk.
+// The windows and hashes of the eight corners around each point of a batch.
 struct Windows {
-  std::array<PhaseArray, 8> weight;
-  std::array<std::array<std::uint32_t, kPhaseChunk>, 8> corner;
-  PhaseArray scale;  // 1 / norm
+  static constexpr int kBatch = 128;  // the windows stay in the first cache
+  std::array<std::array<float, kBatch>, 8> weight;
+  std::array<std::array<std::uint32_t, kBatch>, 8> corner;
+  std::array<float, kBatch> scale;  // 1 / norm
 };
 
 ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const float* __restrict y,
@@ -119,8 +117,8 @@ std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, 
   return waves;
 }
 
-// Writes the heights at n <= kPhaseChunk points of the domain.
-void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, int n, const float* x,
+// Writes the heights at n <= Windows::kBatch points of the domain.
+void evaluate_batch(const RandomPhaseNoise& noise, std::span<const Wave> waves, int n, const float* x,
                     const float* y, const float* z, float* height) {
   Windows windows;
   find_windows(n, x, y, z, noise.inverse_cell, noise.offset, noise.coherence, noise.seed, windows);
@@ -157,8 +155,8 @@ RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, i
 void evaluate_heights(const RandomPhaseNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
   const PointsInDomain p(noise.low, noise.high, count, x, y, z);
-  for (int begin = 0; begin < count; begin += kPhaseChunk) {
-    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kPhaseChunk, count - begin), p.x() + begin,
+  for (int begin = 0; begin < count; begin += Windows::kBatch) {
+    evaluate_batch(noise, arrays.span(noise.waves), std::min(Windows::kBatch, count - begin), p.x() + begin,
                    p.y() + begin, p.z() + begin, height + begin);
   }
 }

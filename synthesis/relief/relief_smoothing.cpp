@@ -11,7 +11,6 @@
 namespace astrolith {
 namespace {
 
-constexpr int kPlacesAtOnce = 16;  // whose means are taken together
 constexpr int kMostFields = 3;
 
 Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
@@ -46,11 +45,11 @@ struct SortedPlaces {
   }
 };
 
-// A few places, and the sums around them.
+// Places whose means are taken together, and the sums around them.
 struct LaneSums {
-  float x[kPlacesAtOnce], y[kPlacesAtOnce], z[kPlacesAtOnce], nx[kPlacesAtOnce], ny[kPlacesAtOnce],
-      nz[kPlacesAtOnce];
-  float total[kPlacesAtOnce] = {}, sums[kMostFields][kPlacesAtOnce] = {};
+  static constexpr int kLanes = 16;
+  float x[kLanes], y[kLanes], z[kLanes], nx[kLanes], ny[kLanes], nz[kLanes];
+  float total[kLanes] = {}, sums[kMostFields][kLanes] = {};
 };
 
 // Adds the places `first` to `end` - 1 to the sums. A place beyond the radius, or that faces the other side,
@@ -66,7 +65,7 @@ ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first
                 place_weight = p.weight[k], value0 = fields[0][k], value1 = fields[1][k],
                 value2 = fields[2][k];
 #pragma omp simd
-    for (int i = 0; i < kPlacesAtOnce; ++i) {
+    for (int i = 0; i < LaneSums::kLanes; ++i) {
       const float dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
       const float squared = dx * dx + dy * dy + dz * dz;
       const float facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
@@ -94,7 +93,7 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
   const auto add_run = [&](std::uint32_t first, std::uint32_t count) {
     LaneSums lanes;
     Box box;
-    for (std::uint32_t i = 0; i < kPlacesAtOnce; ++i) {
+    for (std::uint32_t i = 0; i < LaneSums::kLanes; ++i) {
       const std::uint32_t k = first + std::min(i, count - 1);
       lanes.x[i] = sorted.x[k], lanes.y[i] = sorted.y[k], lanes.z[i] = sorted.z[k];
       lanes.nx[i] = sorted.nx[k], lanes.ny[i] = sorted.ny[k], lanes.nz[i] = sorted.nz[k];
@@ -116,8 +115,8 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
       [&](std::int64_t number) {
         const std::size_t c = static_cast<std::size_t>(number) * stride;
         const std::uint32_t end = points.first_in_cell(c + 1);
-        for (std::uint32_t first = points.first_in_cell(c); first < end; first += kPlacesAtOnce)
-          add_run(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
+        for (std::uint32_t first = points.first_in_cell(c); first < end; first += LaneSums::kLanes)
+          add_run(first, std::min<std::uint32_t>(LaneSums::kLanes, end - first));
       },
       8);
   return means;

@@ -27,7 +27,7 @@ struct PrincipalFrame {
   std::array<Vec3d, 3> axes;
 };
 
-PrincipalFrame frame_of(const std::vector<Vec3d>& points) {
+PrincipalFrame principal_frame(const std::vector<Vec3d>& points) {
   PrincipalFrame frame;
   for (const Vec3d& p : points) frame.center += (1.0 / static_cast<double>(points.size())) * p;
   Matrix3 spread{};
@@ -140,15 +140,15 @@ class Aligner {
 
 }  // namespace
 
-RigidMotion align_surface(const TriangleMesh& a, const SurfaceTree& tree_of_a, const TriangleMesh& b,
+RigidMotion align_surface(const TriangleMesh& a, const SurfaceTree& tree_a, const TriangleMesh& b,
                           std::uint64_t seed, const Progress& progress) {
   const std::vector<Vec3d> points_a = sample_surface(a, kAlignmentSamples, seed).points;
   const std::vector<Vec3d> points_b = sample_surface(b, kAlignmentSamples, seed).points;
-  Aligner aligner(tree_of_a, points_b, progress);
+  Aligner aligner(tree_a, points_b, progress);
   Placed best = aligner.improved({}, kFirstSteps);
-  const PrincipalFrame frame_of_a = frame_of(points_a), frame_of_b = frame_of(points_b);
+  const PrincipalFrame frame_a = principal_frame(points_a), frame_b = principal_frame(points_b);
   for (std::size_t attitude = 0; attitude < 4; ++attitude) {
-    const Placed tried = aligner.improved(between(frame_of_b, frame_of_a, attitude), kFirstSteps);
+    const Placed tried = aligner.improved(between(frame_b, frame_a, attitude), kFirstSteps);
     if (tried.distance < best.distance) best = tried;
   }
   return aligner.improved(best.motion, kLastSteps).motion;

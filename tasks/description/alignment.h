@@ -24,7 +24,7 @@ struct RigidMotion {
 // with the principal axes of b along those of a in each of their four attitudes. From each it goes on by
 // iterated closest points: to the tangent planes of a (Chen and Medioni 1992), by least squares. Sizes stay.
 // Throws as sample_surface does, and WorkError where progress asks to stop.
-RigidMotion align_surface(const TriangleMesh& a, const SurfaceTree& tree_of_a, const TriangleMesh& b,
+RigidMotion align_surface(const TriangleMesh& a, const SurfaceTree& tree_a, const TriangleMesh& b,
                           std::uint64_t seed, const Progress& progress);
 
 TriangleMesh moved(const RigidMotion& motion, TriangleMesh mesh);

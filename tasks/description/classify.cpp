@@ -31,7 +31,7 @@ nlohmann::ordered_json recall_levels() {
 }
 
 nlohmann::ordered_json to_json(const FeatureOptions& options) {
-  nlohmann::ordered_json json{{"kind", name_of(options.kind)}};
+  nlohmann::ordered_json json{{"kind", feature_name(options.kind)}};
   if (options.kind == FeatureKind::shapedna) {
     json["eigenvalues"] = options.eigenvalues;
   } else {
@@ -150,7 +150,7 @@ FeatureOptions chosen_features(const Arguments& a, std::uint64_t seed) {
 
 FeatureTable features_with_failures(Job& job, const std::vector<fs::path>& files,
                                     const FeatureOptions& options) {
-  FeatureTable table = features_of_files(files, options, read_mended_surface, job.progress("describe"));
+  FeatureTable table = read_features(files, options, read_mended_surface, job.progress("describe"));
   for (const std::string& failure : table.failures) job.report_failure(failure);
   for (const std::string& remark : table.remarks) job.say(remark);
   job.summary["failed"] = table.failures;
@@ -158,7 +158,7 @@ FeatureTable features_with_failures(Job& job, const std::vector<fs::path>& files
 }
 
 // A class whose every file failed would never be called.
-void require_shapes_of_each(const LabelledFeatures& data) {
+void require_each_class(const LabelledFeatures& data) {
   for (std::size_t c = 0; c < data.classes.size(); ++c) {
     if (std::find(data.labels.begin(), data.labels.end(), static_cast<int>(c)) != data.labels.end()) continue;
     throw InputError("class " + data.classes[c] +
@@ -187,7 +187,7 @@ void train(Job& job, Arguments& a) {
   }
   for (const fs::path& file : files.skipped) say_skipped(job, file);
   const LabelledFeatures data = labelled(files, features_with_failures(job, files.files, features));
-  require_shapes_of_each(data);
+  require_each_class(data);
 
   job.summary["features"] = to_json(features);
   job.summary["shapes"] = data.rows.size();

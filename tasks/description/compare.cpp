@@ -75,7 +75,7 @@ SurfaceComparison judge(const Job& job, const CompareArguments& arguments, const
 }
 
 // What a reader of the terminal wants of the comparison.
-std::string lines_of(const nlohmann::ordered_json& result, const std::vector<std::string>& surface) {
+std::string to_lines(const nlohmann::ordered_json& result, const std::vector<std::string>& surface) {
   std::string text =
       fmt::format("similarity of the shapes {:.3f}; of two samplings of A {:.3f}\n",
                   result["similarity"].get<double>(), result["similarity_floor"]["a"].get<double>());
@@ -108,8 +108,8 @@ void say_factor(const Job& job, const CompareArguments& arguments, const Triangl
 // one is not known.
 std::string one_unit(const Job& job, const CompareArguments& arguments, TriangleMesh& b) {
   const UnitChoice choice{arguments.unit, ""};
-  const std::string unit_a = unit_of_mesh(job, arguments.a, choice, {}).name;
-  const std::string unit_b = unit_of_mesh(job, arguments.b, choice, {}).name;
+  const std::string unit_a = resolve_unit(job, arguments.a, choice, {}).name;
+  const std::string unit_b = resolve_unit(job, arguments.b, choice, {}).name;
   if (unit_a.empty() || unit_b.empty() || unit_a == unit_b) return unit_a;
   if (!has_known_length(unit_a) || !has_known_length(unit_b)) {
     job.say(fmt::format("note: {}: is in {}, and {} in {}; nothing was scaled", arguments.b, unit_b,
@@ -155,7 +155,7 @@ void run_compare(Job& job, const CompareArguments& arguments) {
   job.summary = result;
   if (!arguments.output.empty()) write_file(arguments.output, json_text(result));
   if (arguments.realism && !arguments.json) {
-    job.print_result(lines_of(result, lines));
+    job.print_result(to_lines(result, lines));
   } else if (arguments.output.empty()) {
     job.print_result(json_text(result));
   }

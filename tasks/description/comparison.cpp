@@ -66,23 +66,23 @@ void add_distances(const SurfaceDistanceReport& d, double diagonal, nlohmann::or
 Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const ComparisonOptions& options,
                           const StageProgress& progress) {
   // Trees refuse garbled meshes, so that they come first.
-  const SurfaceTree tree_of_a = named(a, [&] { return SurfaceTree(a.mesh); }),
-                    tree_of_b = named(b, [&] { return SurfaceTree(b.mesh); });
+  const SurfaceTree tree_a = named(a, [&] { return SurfaceTree(a.mesh); }),
+                    tree_b = named(b, [&] { return SurfaceTree(b.mesh); });
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
   const std::uint64_t seed = options.description.seed;
   compare_histograms(a, b, {options.description, progress, comparison.remarks}, comparison.figures);
   const double diagonal = a.mesh.bounds().diagonal();
-  const auto measure = [&](const TriangleMesh& other, const SurfaceTree& tree_of_other) {
-    add_distances(surface_distance(a.mesh, tree_of_a, other, tree_of_other, options.samples, seed,
-                                   progress("distance")),
-                  diagonal, comparison.figures);
+  const auto measure = [&](const TriangleMesh& other, const SurfaceTree& other_tree) {
+    add_distances(
+        surface_distance(a.mesh, tree_a, other, other_tree, options.samples, seed, progress("distance")),
+        diagonal, comparison.figures);
   };
   if (!options.align) {
-    measure(b.mesh, tree_of_b);
+    measure(b.mesh, tree_b);
     return comparison;
   }
-  const RigidMotion motion = align_surface(a.mesh, tree_of_a, b.mesh, seed, progress("align"));
+  const RigidMotion motion = align_surface(a.mesh, tree_a, b.mesh, seed, progress("align"));
   const TriangleMesh aligned = moved(motion, b.mesh);
   measure(aligned, SurfaceTree(aligned));
   comparison.figures["alignment"] = alignment_json(motion);

@@ -17,25 +17,25 @@ namespace {
 
 constexpr double kLikely = 0.5;  // confidence from which a feature is drawn and measured
 
-const char* kind_of(BlobSign sign) { return sign == BlobSign::hollow ? "crater" : "boulder"; }
+const char* feature_kind(BlobSign sign) { return sign == BlobSign::hollow ? "crater" : "boulder"; }
 
-std::string csv_of_found(const FoundFeatures& found, const std::string& unit) {
+std::string features_to_csv(const FoundFeatures& found, const std::string& unit) {
   std::string text = "kind";
-  for (const auto& [name, value] : columns_of({})) text += std::string(",") + name;
+  for (const auto& [name, value] : feature_columns({})) text += std::string(",") + name;
   text += ",length_unit\n";
   for (const FoundFeature& f : found.features) {
-    text += kind_of(f.sign);
-    for (const auto& [name, value] : columns_of(f)) text += fmt::format(",{:.9g}", value);
+    text += feature_kind(f.sign);
+    for (const auto& [name, value] : feature_columns(f)) text += fmt::format(",{:.9g}", value);
     text += "," + unit + "\n";
   }
   return text;
 }
 
-std::string json_of_found(const FoundFeatures& found, const std::string& unit) {
+std::string features_to_json(const FoundFeatures& found, const std::string& unit) {
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FoundFeature& f : found.features) {
-    nlohmann::ordered_json row{{"kind", kind_of(f.sign)}};
-    for (const auto& [name, value] : columns_of(f)) row[name] = value;
+    nlohmann::ordered_json row{{"kind", feature_kind(f.sign)}};
+    for (const auto& [name, value] : feature_columns(f)) row[name] = value;
     features.push_back(row);
   }
   return nlohmann::ordered_json{{"length_unit", unit}, {"features", features}}.dump(2) + "\n";
@@ -59,7 +59,7 @@ nlohmann::ordered_json sizes_json(const FoundFeatures& found, BlobSign sign) {
 
 }  // namespace
 
-std::vector<std::pair<const char*, double>> columns_of(const FoundFeature& f) {
+std::vector<std::pair<const char*, double>> feature_columns(const FoundFeature& f) {
   return {{"x", f.place.x},
           {"y", f.place.y},
           {"z", f.place.z},
@@ -87,7 +87,8 @@ FoundFeatures find_features(const NamedMesh& shape, const FeatureOptions& option
 
 void write_found_features(const FoundFeatures& found, const std::string& unit,
                           const std::filesystem::path& file) {
-  write_file(file, file.extension() == ".json" ? json_of_found(found, unit) : csv_of_found(found, unit));
+  write_file(file,
+             file.extension() == ".json" ? features_to_json(found, unit) : features_to_csv(found, unit));
 }
 
 nlohmann::ordered_json found_json(const FoundFeatures& found, BlobSign sign) {

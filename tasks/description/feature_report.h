@@ -17,7 +17,7 @@ namespace astrolith {
 FoundFeatures find_features(const NamedMesh& shape, const FeatureOptions& options, const Progress& progress);
 
 // The numbers of a feature, by the names of their columns.
-std::vector<std::pair<const char*, double>> columns_of(const FoundFeature& feature);
+std::vector<std::pair<const char*, double>> feature_columns(const FoundFeature& feature);
 
 // A .json file holds {"length_unit", "features": [objects]}. Any other file is CSV with a header. Columns
 // that the feature lists of synth have too mean the same (synthesis/field/feature_list.h); lengths are in the

@@ -85,7 +85,7 @@ TriangleMesh read_surface(const Job& job, const Arguments& a) {
 void run(Job& job, const Arguments& a) {
   check(job, a);
   const TriangleMesh mesh = read_surface(job, a);
-  PreviewOptions options = a.look.options(job, mesh, unit_of_mesh(job, a.shape, {a.unit, ""}, {}).name);
+  PreviewOptions options = a.look.options(job, mesh, resolve_unit(job, a.shape, {a.unit, ""}, {}).name);
   if (!a.color.empty()) color_by(job, a, options);
   a.look.write(job, render_picture(mesh, options, job.progress("render")), a.output);
   job.summary["triangles"] = mesh.triangles.size();

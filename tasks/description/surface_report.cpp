@@ -38,7 +38,7 @@ Json radii_json(const SurfaceStatistics& surface) {
     if (radii.empty() || radii.back()["edges"] != statistic.radius) {
       radii.push_back({{"edges", statistic.radius}, {"length", statistic.radius * surface.edge}});
     }
-    radii.back()[name_of(statistic.quantity)] = distribution_json(statistic.values);
+    radii.back()[quantity_name(statistic.quantity)] = distribution_json(statistic.values);
   }
   return radii;
 }
@@ -75,7 +75,7 @@ Json bands_json(const SurfaceStatistics& surface) {
 }
 
 Json statistic_json(const StatisticComparison& c, double edge) {
-  Json entry{{"statistic", c.correlation ? "correlation" : name_of(c.quantity)}};
+  Json entry{{"statistic", c.correlation ? "correlation" : quantity_name(c.quantity)}};
   if (c.correlation) {
     entry["from"] = c.radius * edge;
     entry["to"] = c.reach * edge;
@@ -103,7 +103,7 @@ std::vector<std::string> realism_lines(const RealismVerdict& verdict, const Leng
   if (const StatisticComparison* c = verdict.farthest()) {
     const std::string within = c->radius > 0.0 ? " within " + length(c->radius) + " " + lengths.unit : "";
     lines.push_back(fmt::format("largest distance {:.3f}, of {}{}; at most {} to pass", c->distance,
-                                name_of(c->quantity), within, kPassingDistance));
+                                quantity_name(c->quantity), within, kPassingDistance));
   } else {
     lines.emplace_back("no distance counts on so few points");
   }
@@ -123,7 +123,7 @@ std::vector<std::string> realism_lines(const RealismVerdict& verdict, const Leng
 }  // namespace
 
 std::string column_name(const LocalStatistic& statistic) {
-  const std::string name = name_of(statistic.quantity);
+  const std::string name = quantity_name(statistic.quantity);
   return statistic.radius > 0.0 ? fmt::format("{}_{:g}", name, statistic.radius) : name;
 }
 

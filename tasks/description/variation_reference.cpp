@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kReferenceSeed = 1;
 
-ShapeHistogram histogram_of(const TriangleMesh& mesh, std::uint64_t seed) {
+ShapeHistogram shape_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
   DescriptionOptions options;
   options.seed = seed;
   return describe_evened(mesh, options).histogram;
@@ -19,9 +19,9 @@ ShapeHistogram histogram_of(const TriangleMesh& mesh, std::uint64_t seed) {
 }  // namespace
 
 SimilarityMeasure similarity_with(const TriangleMesh& mesh) {
-  return [reference = histogram_of(mesh, kReferenceSeed)](const TriangleMesh& variation,
-                                                          std::uint64_t variation_seed) {
-    return similarity(reference, histogram_of(variation, kReferenceSeed + 1 + variation_seed));
+  return [reference = shape_histogram(mesh, kReferenceSeed)](const TriangleMesh& variation,
+                                                             std::uint64_t variation_seed) {
+    return similarity(reference, shape_histogram(variation, kReferenceSeed + 1 + variation_seed));
   };
 }
 
@@ -32,7 +32,7 @@ std::string describe(const Variation& variation) {
       100.0 * variation.mean_distance, 100.0 * variation.max_distance);
 }
 
-nlohmann::ordered_json figures_of(const Variation& variation) {
+nlohmann::ordered_json to_json(const Variation& variation) {
   return {{"similarity", variation.similarity},
           {"strength", variation.strength},
           {"noise", variation.noise == VariedNoise::kNew ? "new" : "kept"},

@@ -19,6 +19,6 @@ std::string describe(const Variation& variation);
 
 // The figures of a variation: similarity, strength, noise ("new" or "kept"), and its mean and largest
 // distance from the recipe's own body as fractions of the diagonal.
-nlohmann::ordered_json figures_of(const Variation& variation);
+nlohmann::ordered_json to_json(const Variation& variation);
 
 }  // namespace astrolith

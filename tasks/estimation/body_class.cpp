@@ -30,7 +30,7 @@ std::vector<double> slice_volumes(const TriangleMesh& mesh, const BodyFrame& fra
   return volumes;
 }
 
-double waist_of(const std::vector<double>& areas) {
+double narrowest_waist(const std::vector<double>& areas) {
   std::vector<double> before(areas), after(areas);
   for (std::size_t i = 1; i < areas.size(); ++i) before[i] = std::max(before[i], before[i - 1]);
   for (std::size_t i = areas.size() - 1; i-- > 0;) after[i] = std::max(after[i], after[i + 1]);
@@ -71,11 +71,11 @@ ShapeFeatures shape_features(const TriangleMesh& mesh, const BodyFrame& frame) {
     ratios += norm(u), near += 1.0;
   }
   const auto& [a, b, c] = frame.half_axes;
-  return {a / b, c / b, waist_of(smoothed(slice_volumes(mesh, frame, low, high))),
+  return {a / b, c / b, narrowest_waist(smoothed(slice_volumes(mesh, frame, low, high))),
           near > 0.0 ? ratios / near : 1.0};
 }
 
-BodyClass class_of(const ShapeFeatures& f) {
+BodyClass classify_body(const ShapeFeatures& f) {
   if (f.waist < 0.8) return BodyClass::kContactBinary;
   if (f.ridge > 1.03 && f.elongation < 1.15) return BodyClass::kTop;
   if (f.elongation > 1.5) return BodyClass::kElongated;

@@ -32,6 +32,6 @@ ShapeFeatures shape_features(const TriangleMesh& mesh, const BodyFrame& frame);
 
 // contact_binary: waist below .8; top: ridge above 1.03 on a body whose equator is round within 15 %;
 // elongated: elongation above 1.5; rounded: c / a above .75; fragment: all others.
-BodyClass class_of(const ShapeFeatures& features);
+BodyClass classify_body(const ShapeFeatures& features);
 
 }  // namespace astrolith

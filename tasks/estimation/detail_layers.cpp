@@ -19,7 +19,7 @@ namespace astrolith {
 namespace {
 
 // Diagonal of the bare body's box, in the recipe's unit.
-double size_of(const Recipe& recipe) {
+double body_diagonal(const Recipe& recipe) {
   Recipe bare;
   bare.body = recipe.body;
   const Box box = ImplicitField(bare).bounds();
@@ -27,7 +27,7 @@ double size_of(const Recipe& recipe) {
   return box.diagonal();
 }
 
-std::string place_of(std::string_view option, const std::string& file, std::size_t layer) {
+std::string layer_path(std::string_view option, const std::string& file, std::size_t layer) {
   return fmt::format("{}: {}: layers[{}]", option, file, layer);
 }
 
@@ -83,12 +83,12 @@ Recipe read_details(const std::string& file) {
   }
   if (other.layers.empty()) throw InputError(file + ": layers: none; give a recipe with details");
   for (std::size_t i = 0; i < other.layers.size(); ++i)
-    check_no_group(other.layers[i], place_of("--details", file, i));
+    check_no_group(other.layers[i], layer_path("--details", file, i));
   return other;
 }
 
 double transfer_details(const Recipe& other, Recipe& recipe) {
-  const double ratio = size_of(recipe) / size_of(other);
+  const double ratio = body_diagonal(recipe) / body_diagonal(other);
   for (const Layer& layer : other.layers) recipe.layers.push_back(rescaled(layer, ratio));
   return ratio;
 }
@@ -114,7 +114,7 @@ void add_micro_layers(const std::string& file, double mm_per_px, double height_m
   for (std::size_t i = 0; i < rock.layers.size(); ++i) {
     const auto* gabor = std::get_if<GaborLayer>(&rock.layers[i]);
     if (gabor == nullptr) continue;
-    const std::string place = place_of("--micro", file, i);
+    const std::string place = layer_path("--micro", file, i);
     check_no_group(*gabor, place);
     check_masking_layer(rock, i, place);
     check_not_after_warp(recipe.layers, place);

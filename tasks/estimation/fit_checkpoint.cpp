@@ -48,7 +48,7 @@ ordered_json base_json(const ShapeFitResult& base) {
           {"convergence", convergence}};
 }
 
-ShapeFitResult base_of(const ordered_json& json, const std::string& name) {
+ShapeFitResult read_base(const ordered_json& json, const std::string& name) {
   ShapeFitResult base;
   const Recipe recipe = parse_recipe(json.at("recipe").dump(), name + ": base.recipe");
   if (!recipe.body) throw InputError(name + ": base.recipe: has no body");
@@ -75,7 +75,7 @@ ordered_json log_json(const EvaluationLog& log) {
   return entries;
 }
 
-std::map<std::uint64_t, double> log_of(const ordered_json& json) {
+std::map<std::uint64_t, double> read_log(const ordered_json& json) {
   std::map<std::uint64_t, double> entries;
   for (const auto& entry : json) {
     entries.emplace(whole_number<std::uint64_t>(entry.at(0)).value(),
@@ -127,10 +127,10 @@ void FitCheckpoint::read() {
           "begin anew");
     }
     if (json.contains("base")) {
-      base_ = base_of(json.at("base"), name);
+      base_ = read_base(json.at("base"), name);
       has_base_ = true;
     }
-    log_.restore(log_of(json.at("evaluations")));
+    log_.restore(read_log(json.at("evaluations")));
     saved_evaluations_ = log_.size();
     resumed_ = true;
   } catch (const nlohmann::json::exception&) {

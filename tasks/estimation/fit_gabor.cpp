@@ -46,7 +46,7 @@ void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
          "and exemplar, one layer whose image becomes RECIPE_exemplar.png beside it")
       .required()
       .writes([](const auto& words) {
-        return std::vector<std::filesystem::path>{words.front(), exemplar_image_of(words.front())};
+        return std::vector<std::filesystem::path>{words.front(), exemplar_image_path(words.front())};
       });
   app.add_option(
          "--model", o.model,
@@ -274,7 +274,7 @@ void require_outputs(const PhotoFitArguments& o) {
   if (!o.output.empty()) {
     require_extension(o.output, {".json", ".astro"});
     require_writable(o.output);
-    if (o.model != "gabor") require_writable(exemplar_image_of(o.output));
+    if (o.model != "gabor") require_writable(exemplar_image_path(o.output));
   } else if (o.model != "gabor") {
     throw InputError(
         "--output: is missing; a layer with an image wants a recipe's file, beside which the image lies");

@@ -44,7 +44,7 @@ double meters_in(const std::string& unit) { return unit == "km" ? 1000.0 : 1.0; 
 // A table's row: columns by the names of its header.
 using Row = std::map<std::string, std::string>;
 
-std::vector<std::string> cells_of(const std::string& line) {
+std::vector<std::string> split_cells(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream in(line);
   for (std::string cell; std::getline(in, cell, ',');) {
@@ -65,14 +65,14 @@ class BodyTable {
     std::string line;
     if (!in || !std::getline(in, line))
       throw InputError(file.string() + ": cannot be read; give a table (.csv)");
-    const std::vector<std::string> names = cells_of(line);
+    const std::vector<std::string> names = split_cells(line);
     if (std::find(names.begin(), names.end(), "name") == names.end()) {
       throw InputError(file.string() +
                        ": has no column called name; its columns are name, source, class, rotation_period_h, "
                        "density_kg_m3");
     }
     while (std::getline(in, line)) {
-      const std::vector<std::string> cells = cells_of(line);
+      const std::vector<std::string> cells = split_cells(line);
       Row row;
       for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i) row[names[i]] = cells[i];
       if (!row["name"].empty()) rows_[row["name"]] = row;
@@ -80,7 +80,7 @@ class BodyTable {
   }
 
   // The row of a model, whose file may add a mission or a version to the body's name; or null.
-  const Row* row_of(const std::string& model) const {
+  const Row* find_row(const std::string& model) const {
     const Row* best = nullptr;
     std::size_t longest = 0;
     for (const auto& [name, row] : rows_) {
@@ -105,17 +105,17 @@ class BodyTable {
   }
   template <class T, std::size_t n>
   void set_word(const Row& row, const std::string& column, const T (&values)[n],
-                std::string_view (*word_of)(T), T& value) const {
+                std::string_view (*to_word)(T), T& value) const {
     const std::string& word = text(row, column);
     if (word.empty()) return;
     for (const T candidate : values) {
-      if (word_of(candidate) == word) {
+      if (to_word(candidate) == word) {
         value = candidate;
         return;
       }
     }
     std::vector<std::string_view> known;
-    for (const T candidate : values) known.push_back(word_of(candidate));
+    for (const T candidate : values) known.push_back(to_word(candidate));
     fail(row, column, fmt::format("must be one of {}, is {}", fmt::join(known, ", "), word));
   }
   void set_number(const Row& row, const std::string& column, double& value) const {
@@ -143,7 +143,7 @@ Vec3d rounded(const Vec3d& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)
 MeasuredBody measured_body(const MetaballBody& body, const TriangleMesh& mesh, double unit) {
   const BodyFrame frame = body_frame(mesh);
   MeasuredBody measured;
-  measured.kind = class_of(shape_features(mesh, frame));
+  measured.kind = classify_body(shape_features(mesh, frame));
   measured.body = {body};
   measured.body.front().groups.clear();
   measured.unit = unit;
@@ -235,7 +235,7 @@ void fit_population(Job& job, PopulationOptions& options) {
     const std::string model = file.stem().string();
     MeasuredBody body = is_recipe(file) ? from_recipe(file, options) : from_mesh(job, file, options);
     body.name = model;
-    if (const Row* row = table.row_of(model)) {
+    if (const Row* row = table.find_row(model)) {
       table.apply(*row, body);
     } else if (!options.table.empty()) {
       job.note(fmt::format("note: {}: has no row for {}; taken as measured by a camera",

@@ -41,7 +41,7 @@ struct JudgedFit {
   std::string remark;                 // why the surface could not be judged
 };
 
-LengthWords lengths_of(const FitRealism& realism, const TargetBody& target, const std::string& unit) {
+LengthWords length_words(const FitRealism& realism, const TargetBody& target, const std::string& unit) {
   LengthWords lengths = words_for_lengths(unit, 3.0 * realism.verdict.edge * target.diagonal);
   lengths.scale *= target.diagonal;
   return lengths;
@@ -67,8 +67,8 @@ nlohmann::ordered_json fit_realism_json(const FitRealism& realism, const TargetB
   verdict.edge *= target.diagonal;
   nlohmann::ordered_json json = realism_json(verdict, words_for_lengths(unit, 3.0 * verdict.edge));
   nlohmann::ordered_json seeds = nlohmann::ordered_json::array();
-  for (const RealismVerdict& verdict_of_one : realism.verdict_of_seed) {
-    seeds.push_back({{"p", verdict_of_one.p}, {"largest_distance", verdict_of_one.largest_distance}});
+  for (const RealismVerdict& seed : realism.seed_verdicts) {
+    seeds.push_back({{"p", seed.p}, {"largest_distance", seed.largest_distance}});
   }
   json["noise_seeds"] = seeds;
   return json;
@@ -76,13 +76,13 @@ nlohmann::ordered_json fit_realism_json(const FitRealism& realism, const TargetB
 
 // The verdict for a report, which refers to `realism`.
 ReportedRealism reported(const FitRealism& realism, const TargetBody& target, const std::string& unit) {
-  return {realism.verdict, realism.target, realism.mesh, realism.fit, lengths_of(realism, target, unit)};
+  return {realism.verdict, realism.target, realism.mesh, realism.fit, length_words(realism, target, unit)};
 }
 
 // The recipe of a fitted body, without layers and without the figures that the fit achieved. With --bytes it
 // has no provenance either.
-Recipe recipe_of(const Job& job, const FitArguments& arguments, const Vec3d& origin,
-                 const ShapeFitResult& fit) {
+Recipe make_recipe(const Job& job, const FitArguments& arguments, const Vec3d& origin,
+                   const ShapeFitResult& fit) {
   Recipe recipe;
   recipe.origin = origin;
   recipe.length_unit = arguments.unit;
@@ -171,7 +171,7 @@ void add_similarity(const Job& job, const TargetBody& target, std::uint64_t seed
 
 // What to do about a topology that is not the target's. `base` is the mesh of the metaballs alone, where
 // there are details too.
-std::string remedy_of_topology(const PartsAndHandles& wanted, const TriangleMesh& base) {
+std::string suggest_remedy(const PartsAndHandles& wanted, const TriangleMesh& base) {
   if (!base.triangles.empty() && parts_and_handles(analyze_topology(base)) == wanted)
     return "the metaballs alone, --base-only, have the target's";
   return "try another --seed, or another number of --spheres";
@@ -196,7 +196,7 @@ void say_result(const Job& job, const TargetBody& target, const ShapeFitResult& 
   const PartsAndHandles made = parts_and_handles(fit.check.topology), wanted = parts_and_handles(target);
   if (made != wanted) {
     job.say(fmt::format("note: the fit has {}, the target {}; {}", made.words(), wanted.words(),
-                        remedy_of_topology(wanted, fit.base_mesh)));
+                        suggest_remedy(wanted, fit.base_mesh)));
   }
 }
 
@@ -276,7 +276,7 @@ void add_variations(Job& job, const FitArguments& arguments, const TargetBody& t
                        variation_files(arguments.output, arguments.details.variations));
 }
 
-BodyPacking packing_of(Job& job, const FitArguments& arguments, const TargetBody& target) {
+BodyPacking pack_target(Job& job, const FitArguments& arguments, const TargetBody& target) {
   const std::string title = std::filesystem::path(arguments.mesh).filename().string();
   BodyPacking packing = pack_body(
       target, {arguments.fit.spheres, arguments.unit, arguments.density, title, job.tool(), arguments.output},
@@ -340,7 +340,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
   FittedShape result;
   job.summary["length_unit"] = arguments.unit;
   if (arguments.packing_only) {
-    result.packing = packing_of(job, arguments, target);
+    result.packing = pack_target(job, arguments, target);
     return result;
   }
   check_relief(target, arguments);
@@ -354,7 +354,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
       target, arguments.fit, checkpoint,
       [&](const std::string& stage) { return limit.guard(job.progress(stage), stage); },
       [&] { return job.stopped(); });
-  Recipe& recipe = result.recipe = recipe_of(job, arguments, origin, fit);
+  Recipe& recipe = result.recipe = make_recipe(job, arguments, origin, fit);
   const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
   if (with_details && !job.stopped() && limit.allows_more()) {
     add_details(job, arguments, target, limit, checkpoint, fit, recipe);

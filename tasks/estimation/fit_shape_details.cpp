@@ -139,7 +139,7 @@ nlohmann::ordered_json write_variations(const Job& job, const TargetBody& target
     const Variation variation =
         find_variation(recipe, similarity, arguments.delta, k + 1, job.progress("variation"));
     write_loaded_recipe(variation.recipe, files[k]);
-    figures.push_back(figures_of(variation));
+    figures.push_back(to_json(variation));
     job.say(fmt::format("{}: similarity {:.4f} with the mesh; {}", files[k].string(), variation.similarity,
                         describe(variation)));
     if (job.stopped()) break;

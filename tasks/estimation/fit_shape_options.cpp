@@ -19,8 +19,8 @@ namespace {
 // Heights over 200 are hardly nearer and take more bytes (docs/accuracy.md#relief).
 constexpr int kMetaballsUnderRelief = 80;
 // With fewer bytes metaballs alone come nearer (docs/accuracy.md#relief).
-constexpr int kFewestBytesOfRelief = 6000;
-constexpr int kFewestBytesOfBoth = 400;
+constexpr int kFewestBytesForRelief = 6000;
+constexpr int kFewestBytesForBoth = 400;
 constexpr double kFewestSpacings = 8.0;  // of heights along the diagonal of a body
 
 // The input, the output and the fit of the metaballs.
@@ -139,7 +139,7 @@ void declare_fit_options(Job& job, FitArguments& arguments) {
 void settle_fit_options(const Job& job, FitArguments& arguments) {
   arguments.fit.seed = job.seed;
   if (!arguments.in_memory) {
-    const MeshUnit unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
+    const MeshUnit unit = resolve_unit(job, arguments.mesh, {arguments.unit}, {"km", "m"});
     arguments.unit = unit.name;
     arguments.unit_assumed = unit.assumed;
   }
@@ -157,15 +157,15 @@ void check_relief(const TargetBody& target, const FitArguments& arguments) {
   const DetailArguments& details = arguments.details;
   if (!details.makes_relief()) return;
   if (!details.chosen_by_job() || details.gives_spacing()) expect_relief(target);
-  if (!details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesOfBoth) {
+  if (!details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesForBoth) {
     throw InputError(
         fmt::format("--bytes: {} hold no heights beside metaballs; give {} or more, or --base-only",
-                    arguments.bytes, kFewestBytesOfBoth));
+                    arguments.bytes, kFewestBytesForBoth));
   }
   if (!details.gives_spacing()) return;
   const double edge = target.diagonal * mean_edge(target.surface), least = edge / kMostReliefEdge;
   const double most = target.diagonal * norm(target.surface.bounds().extent()) / kFewestSpacings;
-  const double spacing = relief_spacing_of(details.relief_spacing, arguments.unit, edge);
+  const double spacing = parse_relief_spacing(details.relief_spacing, arguments.unit, edge);
   if (spacing >= least && spacing <= most) return;
   throw InputError(
       fmt::format("--relief-spacing: is {:.4g} {}, and this model bears {:.4g} to {:.4g}; take one of these",
@@ -174,7 +174,7 @@ void check_relief(const TargetBody& target, const FitArguments& arguments) {
 
 void settle_metaballs(const Job& job, const TargetBody& target, FitArguments& arguments) {
   DetailArguments& details = arguments.details;
-  if (details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesOfRelief)
+  if (details.chosen_by_job() && arguments.bytes > 0 && arguments.bytes < kFewestBytesForRelief)
     details.base_only = true;
   const bool relief = details.makes_relief() && can_have_relief(target);
   ShapeFitOptions& fit = arguments.fit;

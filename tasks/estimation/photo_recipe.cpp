@@ -12,7 +12,7 @@ namespace astrolith {
 namespace {
 
 GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel, bool first) {
-  GaborLayer layer = layer_of(channel, first);
+  GaborLayer layer = make_gabor_layer(channel, first);
   layer.name = o.layer_name;
   layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_per_unit(o.unit)) : 1.0;
   if (first) layer.height_rms = o.height_rms >= 0.0 ? o.height_rms : layer.height_rms * o.unit_per_value;
@@ -74,12 +74,12 @@ Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options) {
   return recipe;
 }
 
-fs::path exemplar_image_of(const fs::path& recipe) {
+fs::path exemplar_image_path(const fs::path& recipe) {
   return fs::path(recipe).replace_filename(recipe.stem().string() + "_exemplar.png");
 }
 
 void write_exemplar_recipe(Recipe recipe, const fs::path& file) {
-  const fs::path image = exemplar_image_of(file);
+  const fs::path image = exemplar_image_path(file);
   auto& layer = std::get<ExemplarLayer>(recipe.layers.front());
   const ExemplarImage& pixels = *layer.pixels;
   if (layer.color) {

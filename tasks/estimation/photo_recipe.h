@@ -32,7 +32,7 @@ nlohmann::ordered_json gaussianity_figures(const Gaussianity& gaussianity);
 Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options);
 
 // The PNG beside a recipe: "rock.json" has "rock_exemplar.png".
-std::filesystem::path exemplar_image_of(const std::filesystem::path& recipe);
+std::filesystem::path exemplar_image_path(const std::filesystem::path& recipe);
 
 // Writes the PNG of the recipe's only layer, an exemplar, and then the recipe that names it.
 void write_exemplar_recipe(Recipe recipe, const std::filesystem::path& file);

@@ -17,7 +17,7 @@ namespace {
 
 // The vertices of the fit's mesh that belong to stray components, are far from the target or turned away from
 // it; in the file's frame.
-std::vector<Vec3d> strays_of(const TargetBody& target, const FitCheck& check, double turned) {
+std::vector<Vec3d> find_strays(const TargetBody& target, const FitCheck& check, double turned) {
   constexpr double kStrayDistance = 0.015;  // of the diagonal
   std::vector<Vec3d> strays;
   for (const StrayComponent& stray : compare_components(target, check.mesh).strays) {
@@ -32,7 +32,7 @@ std::vector<Vec3d> strays_of(const TargetBody& target, const FitCheck& check, do
 }
 
 // How many parts and handles a fit has too many or too few.
-std::int64_t mismatch_of(const ShapeFitResult& fit, const PartsAndHandles& wanted) {
+std::int64_t topology_mismatch(const ShapeFitResult& fit, const PartsAndHandles& wanted) {
   const PartsAndHandles made = parts_and_handles(fit.check.topology);
   return std::abs(made.parts - wanted.parts) + std::abs(made.handles - wanted.handles);
 }
@@ -43,16 +43,16 @@ std::size_t mend_relief(const TargetBody& target, const ShapeFitOptions& options
                         const Progress& progress, Recipe& recipe, ShapeFitResult& fit) {
   constexpr int kRounds = 8;
   const PartsAndHandles wanted = parts_and_handles(target);
-  const std::int64_t mismatch = mismatch_of(fit, wanted);
+  const std::int64_t mismatch = topology_mismatch(fit, wanted);
   if (mismatch == 0) return 0;
   const Recipe whole = recipe;
   const ShapeFitResult as_it_was = fit;
   double turned = 0.002;  // of the diagonal
   std::size_t halved = 0;
-  for (int round = 0; round < kRounds && mismatch_of(fit, wanted) > 0; ++round) {
+  for (int round = 0; round < kRounds && topology_mismatch(fit, wanted) > 0; ++round) {
     if (!report(progress, static_cast<double>(round) / kRounds, "topology")) break;
     Recipe softened = recipe;
-    const std::size_t changed = halve_heights(strays_of(target, fit.check, turned), softened);
+    const std::size_t changed = halve_heights(find_strays(target, fit.check, turned), softened);
     if (changed == 0) break;
     if (most_bytes > 0 && recipe_to_compact(softened).size() > most_bytes) break;
     halved += changed;
@@ -60,7 +60,7 @@ std::size_t mend_relief(const TargetBody& target, const ShapeFitOptions& options
     measure_recipe(target, recipe, options, fit);
     turned *= 0.7;
   }
-  if (mismatch_of(fit, wanted) < mismatch) return halved;
+  if (topology_mismatch(fit, wanted) < mismatch) return halved;
   recipe = whole;  // lower heights have not helped
   fit = as_it_was;
   return 0;

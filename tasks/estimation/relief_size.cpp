@@ -53,14 +53,14 @@ class SizedReliefs {
   // From try to try the spacing follows from the bytes, which grow about as the number of heights does.
   ReliefFit finest() {
     const double least = least_relief_spacing(surface_);
-    double spacing = std::max(least, std::sqrt(surface_area(surface_) * kBytesOfHeight / room()));
+    double spacing = std::max(least, std::sqrt(surface_area(surface_) * kBytesPerHeight / room()));
     std::optional<ReliefFit> best;
     double refused = 0.0;  // the largest spacing that takes too many bytes
     for (int i = 0; i < kMostTries; ++i) {
       ReliefFit fit = fitted(spacing, i);
       // The heights of a try that was stopped are not solved.
       if (stopped_) return best ? std::move(*best) : ReliefFit{};
-      const double size = size_of(fit);
+      const double size = added_bytes(fit);
       const bool fits = size <= room();
       if (!fits) refused = std::max(refused, spacing);
       if (fits && (!best || spacing < best->layer.spacing)) best = std::move(fit);
@@ -75,7 +75,7 @@ class SizedReliefs {
 
  private:
   static constexpr int kMostTries = 6;
-  static constexpr double kBytesOfHeight = 0.55;       // of a model's own heights; a first guess
+  static constexpr double kBytesPerHeight = 0.55;      // of a model's own heights; a first guess
   static constexpr double kFull = 0.97, kAim = 0.985;  // of the bytes
   static constexpr std::size_t kFewestHeights = 100;   // fewer tell nothing of a surface
 
@@ -90,7 +90,7 @@ class SizedReliefs {
     return static_cast<double>(bytes_ - bare_);
   }
   // The bytes that the layer adds.
-  double size_of(const ReliefFit& fit) const {
+  double added_bytes(const ReliefFit& fit) const {
     Recipe with = recipe_;
     with.layers.emplace_back(fit.layer);
     return static_cast<double>(recipe_to_compact(with).size()) - static_cast<double>(bare_);
@@ -119,7 +119,7 @@ ValueRule relief_spacing_words() {
   return {complaint, ""};
 }
 
-double relief_spacing_of(const std::string& words, const std::string& unit, double mean_edge) {
+double parse_relief_spacing(const std::string& words, const std::string& unit, double mean_edge) {
   if (words.empty() || words == "auto") return 0.0;
   const Length length = length_in(words).value();
   if (length.unit.empty()) return length.number;
@@ -136,7 +136,7 @@ void expect_relief(const TargetBody& target) { expect_relief_facets(target.surfa
 ReliefFit add_relief(const TargetBody& target, const std::string& words, const Progress& progress,
                      Recipe& recipe) {
   const TriangleMesh surface = in_file_frame(target);
-  const double spacing = relief_spacing_of(words, recipe.length_unit, mean_edge(surface));
+  const double spacing = parse_relief_spacing(words, recipe.length_unit, mean_edge(surface));
   ReliefFit relief = fit_relief(surface, recipe, {spacing, 0.0}, progress);
   if (relief.layer.pixels != nullptr) recipe.layers.emplace_back(relief.layer);
   return relief;

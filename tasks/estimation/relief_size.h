@@ -16,7 +16,7 @@ namespace astrolith {
 // edges of the model. The rule refuses other words.
 ValueRule relief_spacing_words();
 // Its length in `unit`, of a model with this mean edge; 0 for "auto". Expects words that the rule allows.
-double relief_spacing_of(const std::string& words, const std::string& unit, double mean_edge);
+double parse_relief_spacing(const std::string& words, const std::string& unit, double mean_edge);
 
 // Whether the target has facets enough for heights.
 bool can_have_relief(const TargetBody& target);

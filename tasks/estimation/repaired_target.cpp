@@ -54,7 +54,7 @@ TargetBody repaired_target(Job& job, const FitArguments& arguments, TriangleMesh
     mesh = std::move(done.mesh);
     if (std::string words = repair_words(done, arguments.unit, options); !words.empty())
       remarks.push_back(std::move(words));
-    if (done.changed || says_of_parts(done)) figures = repair_json(done);
+    if (done.changed || mentions_parts(done)) figures = repair_json(done);
   };
   const auto prepared = [&]() -> TargetBody {
     if (arguments.repair.strict) return prepare_target(std::move(mesh), name, preparing);

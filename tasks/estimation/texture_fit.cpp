@@ -60,22 +60,22 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
 // A photo is no one texture where the grey values of its squares differ by this, in standard deviations.
 constexpr double kUnlikeSquares = 0.5;
 
-nlohmann::ordered_json figures_of(const HeldOutScore& score) {
+nlohmann::ordered_json to_json(const HeldOutScore& score) {
   return {{"values", score.mean.values}, {"filters", score.mean.filters}, {"scatter", score.scatter}};
 }
 
-nlohmann::ordered_json figures_of(const ModelChoice& choice) {
+nlohmann::ordered_json to_json(const ModelChoice& choice) {
   nlohmann::ordered_json figures = {
       {"squares", choice.squares}, {"side", choice.side}, {"models", nlohmann::ordered_json::object()}};
   if (choice.squares == 0) return figures;
   for (const TextureModel model : kTextureModels)
     figures["models"][std::string(model_word(model))] =
-        figures_of(choice.scores[static_cast<std::size_t>(model)]);
-  figures["photo"] = figures_of(choice.photo);
+        to_json(choice.scores[static_cast<std::size_t>(model)]);
+  figures["photo"] = to_json(choice.photo);
   return figures;
 }
 
-nlohmann::ordered_json figures_of(const PreparedExemplar& exemplar) {
+nlohmann::ordered_json to_json(const PreparedExemplar& exemplar) {
   auto scores = nlohmann::ordered_json::object();
   for (const ExemplarVariant variant : kExemplarVariants) {
     const TextureScore& score = exemplar.scores[static_cast<int>(variant)];
@@ -129,8 +129,8 @@ void write_texture_recipe(const TextureFit& fit, const Recipe& recipe, const std
 
 nlohmann::ordered_json texture_figures(const TextureFit& fit) {
   nlohmann::ordered_json figures = {{"model", std::string(model_word(fit.model))}};
-  if (fit.choice) figures["choice"] = figures_of(*fit.choice);
-  if (fit.exemplar) figures.update(figures_of(*fit.exemplar));
+  if (fit.choice) figures["choice"] = to_json(*fit.choice);
+  if (fit.exemplar) figures.update(to_json(*fit.exemplar));
   if (fit.lobes) figures.update(photo_figures(*fit.lobes));
   if (fit.model == TextureModel::kPhase) figures["variance_in_spectrum"] = variance_in_phases(fit);
   if (fit.gaussianity) figures.update(gaussianity_figures(*fit.gaussianity));

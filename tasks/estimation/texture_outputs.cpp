@@ -26,7 +26,7 @@ std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, 
   return synthesize_texture(layer, exemplar.width, exemplar.height, {seed, stream}, progress);
 }
 
-std::uint8_t byte_of(double value) {
+std::uint8_t to_byte(double value) {
   return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
 
@@ -47,7 +47,7 @@ ReportPicture color_picture(const PhotoFit& photo, const std::vector<ChannelValu
       const ChannelValues& c = channels[k];
       color = color + photo.channels[k].color->axis * (c.gain * (c.values[i] - c.center));
     }
-    for (const double part : {color.x, color.y, color.z}) picture.rgb.push_back(byte_of(part));
+    for (const double part : {color.x, color.y, color.z}) picture.rgb.push_back(to_byte(part));
   }
   return picture;
 }
@@ -81,16 +81,16 @@ TextureReport lobe_report(const PhotoFit& photo, const FitTexture& texture, std:
   return report;
 }
 
-ReportPicture picture_of(const std::vector<GreyImage>& planes) {
+ReportPicture to_picture(const std::vector<GreyImage>& planes) {
   if (planes.size() == 1) return tone_mapped(planes[0].values, planes[0].width, planes[0].height);
   ReportPicture picture{planes[0].width, planes[0].height, {}};
   for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
-    for (const GreyImage& plane : planes) picture.rgb.push_back(byte_of(plane.values[i]));
+    for (const GreyImage& plane : planes) picture.rgb.push_back(to_byte(plane.values[i]));
   }
   return picture;
 }
 
-ReportPicture picture_of(const ExemplarImage& image) {
+ReportPicture to_picture(const ExemplarImage& image) {
   ReportPicture picture{image.width, image.height, {}};
   constexpr int kBytes = 257;  // 65535 / 255
   for (std::size_t i = 0; i < image.values.size(); ++i) {
@@ -114,12 +114,12 @@ GreyImage texture_image(const TextureFit& fit, const FitTexture& texture) {
   return {photo.width, photo.height, {texture.channels.front().begin(), texture.channels.front().end()}};
 }
 
-std::string verdict_of(const TextureFit& fit) {
+std::string describe_verdict(const TextureFit& fit) {
   if (fit.model != TextureModel::kExemplar) return fit.gaussianity.value().sentence;
   return "The layer is the photo itself, tiled and blended: it keeps the photo's shapes.";
 }
 
-std::vector<PageTable> tables_of_choice(const TextureFit& fit) {
+std::vector<PageTable> choice_tables(const TextureFit& fit) {
   if (!fit.choice || fit.choice->squares == 0) return {};
   return {choice_table(*fit.choice)};
 }
@@ -130,7 +130,7 @@ void write_image_report(const std::string& name, const TextureFit& fit, const Fi
   const PowerSpectrum measured = estimated(luma, kReportGrid), shown = estimated(image, kReportGrid);
   TextureReport report{
       name,
-      picture_of(fit.photo),
+      to_picture(fit.photo),
       {},
       measured,
       shown,
@@ -138,16 +138,17 @@ void write_image_report(const std::string& name, const TextureFit& fit, const Fi
       nullptr,
       luma.values,
       image.values,
-      picture_of(*fit.image->pixels)};
+      to_picture(*fit.image->pixels)};
   report.texture = tone_mapped(image.values, image.width, image.height);
   if (!texture.rgb.empty()) {
     report.texture.rgb.clear();
-    for (const float v : texture.rgb) report.texture.rgb.push_back(byte_of(double{v}));
+    for (const float v : texture.rgb) report.texture.rgb.push_back(to_byte(double{v}));
   }
   write_texture_report(report, folder);
-  std::vector<PageTable> tables = tables_of_choice(fit);
+  std::vector<PageTable> tables = choice_tables(fit);
   if (fit.gaussianity) tables.push_back(gaussianity_table(*fit.gaussianity));
-  write_texture_page(report, std::string(model_word(fit.model)), verdict_of(fit), std::move(tables), folder);
+  write_texture_page(report, std::string(model_word(fit.model)), describe_verdict(fit), std::move(tables),
+                     folder);
 }
 
 }  // namespace
@@ -193,7 +194,7 @@ void write_texture_reports(const std::string& name, const TextureFit& fit, const
     report.title = name + (alone ? "" : fmt::format(", principal channel {}", k + 1));
     const fs::path here = k == 0 ? folder : folder / fmt::format("channel{}", k + 1);
     write_texture_report(report, here);
-    std::vector<PageTable> tables = tables_of_choice(fit);
+    std::vector<PageTable> tables = choice_tables(fit);
     tables.push_back(gaussianity_table(channel.gaussianity.value()));
     tables.push_back(lobe_table(channel));
     write_texture_page(report, "lobes", channel.gaussianity->sentence, std::move(tables), here);

@@ -55,14 +55,14 @@ Json mass_json(const GravityBody& body, const BodyMass& mass, double volume, dou
 // The file, the density and the mass of each part.
 Json parts_json(const GravityBody& body, const std::vector<BodyPart>& parts) {
   const double m = body.metres;
-  Json list_of_parts = Json::array();
+  Json part_list = Json::array();
   for (const BodyPart& part : parts) {
-    list_of_parts.push_back({{"shape", part.name},
-                             {"density_kg_m3", part.density},
-                             {"volume_m3", part.mass.volume * m * m * m},
-                             {"mass_kg", part.density * part.mass.volume * m * m * m}});
+    part_list.push_back({{"shape", part.name},
+                         {"density_kg_m3", part.density},
+                         {"volume_m3", part.mass.volume * m * m * m},
+                         {"mass_kg", part.density * part.mass.volume * m * m * m}});
   }
-  return list_of_parts;
+  return part_list;
 }
 
 // Coefficients about the centre of mass for the reference radius in the body's unit; 0 stands for the
@@ -109,7 +109,7 @@ Evaluation evaluated(const GravityBody& body, const GravityPlaces& places, const
   return result;
 }
 
-Rotation rotation_of(const GravityBody& body, const BodyMass& mass, const GravityOptions& options) {
+Rotation choose_rotation(const GravityBody& body, const BodyMass& mass, const GravityOptions& options) {
   const double rate = options.period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * options.period) : 0.0;
   return {body.metres * mass.center, options.axis, rate};
 }
@@ -153,7 +153,7 @@ ComputedGravity compute_gravity(const GravityBody& body, const GravityPlaces& pl
   const Evaluation evaluation = evaluated(body, places, options, progress);
   const std::vector<PointGravity> values =
       point_gravity(in_metres(places.points, body.metres), evaluation.attractions, options.density,
-                    body.metres, rotation_of(body, mass, options));
+                    body.metres, choose_rotation(body, mass, options));
   const SurfaceMeans means =
       surface_means(values, places.areas.empty() ? std::vector<double>(values.size()) : places.areas);
   ComputedGravity result{gravity_columns(places, values, means),

@@ -28,14 +28,14 @@ void require_closed(const std::string& name, const TriangleMesh& mesh) {
 
 }  // namespace
 
-GravityBody body_of_mesh(TriangleMesh mesh, const std::string& unit, const std::string& name) {
+GravityBody make_mesh_body(TriangleMesh mesh, const std::string& unit, const std::string& name) {
   GravityBody body{std::move(mesh), unit, metres_per_unit(unit), {}};
   require_closed(name, body.mesh);
   return body;
 }
 
-GravityBody body_of_recipe(const Recipe& recipe, int resolution, const std::string& name,
-                           const StageProgress& progress) {
+GravityBody make_recipe_body(const Recipe& recipe, int resolution, const std::string& name,
+                             const StageProgress& progress) {
   if (recipe.length_unit == "px") throw InputError(name + ": length_unit: px is no length; state m or km");
   if (!recipe.body) throw InputError(name + ": is a recipe without a body; give one with a body");
   if (recipe.erosion) {
@@ -45,7 +45,7 @@ GravityBody body_of_recipe(const Recipe& recipe, int resolution, const std::stri
   MeshCollector collector;
   mesh_field(field, field.bounds(), resolution, collector, progress("mesh"));
   for (Vec3d& p : collector.mesh.vertices) p += recipe.origin;
-  return body_of_mesh(std::move(collector.mesh), recipe.length_unit, name);
+  return make_mesh_body(std::move(collector.mesh), recipe.length_unit, name);
 }
 
 }  // namespace astrolith

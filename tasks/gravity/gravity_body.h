@@ -19,11 +19,11 @@ struct GravityBody {
 // The body of a mesh whose coordinates are in `unit`: "m", "km", "cm" or "mm". `name` is what messages call
 // the mesh. Throws InputError for a mesh that is open, whose faces wind in opposite senses, or whose volume
 // is not positive.
-GravityBody body_of_mesh(TriangleMesh mesh, const std::string& unit, const std::string& name);
+GravityBody make_mesh_body(TriangleMesh mesh, const std::string& unit, const std::string& name);
 
 // The body of a recipe, meshed with `resolution` cells along its longest side; the stage is "mesh". Throws
 // InputError for a recipe without a body, with erosion or in pixels.
-GravityBody body_of_recipe(const Recipe& recipe, int resolution, const std::string& name,
-                           const StageProgress& progress);
+GravityBody make_recipe_body(const Recipe& recipe, int resolution, const std::string& name,
+                             const StageProgress& progress);
 
 }  // namespace astrolith

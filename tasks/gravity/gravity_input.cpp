@@ -47,7 +47,7 @@ bool holds(const Box& outer, const Box& inner) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> files_of_parts(const std::vector<std::string>& words) {
+std::vector<std::filesystem::path> part_files(const std::vector<std::string>& words) {
   std::vector<std::filesystem::path> files;
   for (const std::string& list : words) {
     std::istringstream all(list);
@@ -91,7 +91,7 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& name,
                               int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures) {
   const std::filesystem::path file = find_body(name);
   if (!is_recipe_name(file)) {
-    const MeshUnit length_unit = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
+    const MeshUnit length_unit = resolve_unit(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
     // Edges of four facets, two each way, are no trouble for gravity, once facets that are there twice count
     // once.
@@ -110,7 +110,7 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& name,
       mesh = repair.closed_body(job, std::move(mesh), file.string(), length_unit.name, repair.options(),
                                 figures);
     }
-    GravityBody body = body_of_mesh(std::move(mesh), length_unit.name, file.string());
+    GravityBody body = make_mesh_body(std::move(mesh), length_unit.name, file.string());
     const std::string asked = unit_question(file, volume(body.mesh), length_unit);
     if (!asked.empty()) job.say(asked);
     if (asked.empty() && length_unit.assumed)
@@ -121,8 +121,8 @@ GravityBody read_gravity_body(const Job& job, const std::filesystem::path& name,
   if (!unit.given.empty() && unit.given != recipe.length_unit) {
     throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
   }
-  return body_of_recipe(recipe, resolution, file.string(),
-                        [&](const std::string& stage) { return job.progress(stage); });
+  return make_recipe_body(recipe, resolution, file.string(),
+                          [&](const std::string& stage) { return job.progress(stage); });
 }
 
 }  // namespace astrolith

@@ -14,7 +14,7 @@
 namespace astrolith {
 
 // The files of words such as FILE=DENSITY,FILE=DENSITY.
-std::vector<std::filesystem::path> files_of_parts(const std::vector<std::string>& words);
+std::vector<std::filesystem::path> part_files(const std::vector<std::string>& words);
 
 // Reads parts given as FILE=DENSITY,FILE=DENSITY. A file is a closed mesh in the body's unit and frame, or a
 // recipe of that unit; `unit` is that of --unit, or empty. Throws InputError for a word of another form, a

@@ -44,7 +44,7 @@ struct SitesRequest {
   std::filesystem::path list;  // .csv; empty = none
 };
 
-double distance_of(const SitesRequest& request) {
+double site_distance(const SitesRequest& request) {
   return request.distance > 0.0 ? request.distance : 2.0 * request.side;
 }
 
@@ -126,7 +126,7 @@ std::vector<LandingSite> landing_sites(Job& job, const SitesRequest& request, co
   const auto slopes = std::find_if(columns.begin(), columns.end(),
                                    [](const GravityColumn& column) { return column.name == "slope_deg"; });
   say_if_nothing_stays(job, body, slopes->values);
-  const SiteSearch search{request.count, request.side, distance_of(request)};
+  const SiteSearch search{request.count, request.side, site_distance(request)};
   std::vector<LandingSite> sites = find_landing_sites(body, slopes->values, search, job.progress("sites"));
   std::erase_if(sites, [](const LandingSite& site) { return site.mean_slope > 90.0; });
   figures["sites"] = sites_json(sites, body);
@@ -224,7 +224,7 @@ void add_options(Job& job, Arguments& a) {
                  "lobes, boulders, a core, a cavity of 0")
       .placeholder("FILE=N,FILE=N ...")
       .default_text("")
-      .reads(files_of_parts);
+      .reads(part_files);
   app.add_option("--period", a.period, "of rotation, hours; without it the body is at rest")
       .placeholder("N")
       .default_text("");
@@ -273,7 +273,7 @@ void add_options(Job& job, Arguments& a) {
   a.look.add_to(app);
 }
 
-Vec3d axis_of(const Arguments& a) {
+Vec3d parse_axis(const Arguments& a) {
   const auto& [x, y, z] = a.axis;
   const Vec3d axis = normalized(Vec3d{x, y, z});
   if (!(norm(axis) > 0.5)) throw InputError("--axis: 0 0 0 is no direction; give another");
@@ -288,7 +288,7 @@ void check(const Job& job, const Arguments& a) {
   if (job.options.option("--period").count() > 0 && !(a.period > 0.0)) {
     throw InputError("--period: must be above 0 hours; leave it out for a body at rest");
   }
-  axis_of(a);
+  parse_axis(a);
   if (!a.points.empty() && (!a.preview.empty() || job.options.option("--at").count() > 0)) {
     throw InputError("--points: gives places of its own; leave out --at and --preview");
   }
@@ -308,19 +308,19 @@ void check(const Job& job, const Arguments& a) {
   }
 }
 
-GravityPlaces places_of(const Job& job, const Arguments& a, const GravityBody& body) {
+GravityPlaces read_places(const Job& job, const Arguments& a, const GravityBody& body) {
   if (a.points.empty()) return a.at == "vertices" ? vertex_places(body.mesh) : facet_places(body.mesh);
   PointTable table = read_point_table(a.points, body.unit);
   if (!table.words.empty()) job.say("note: " + a.points + ": " + table.words);
   return {std::move(table.points), {}, {}, "points"};
 }
 
-GravityOptions options_of(const Job& job, const Arguments& a, const GravityBody& body) {
-  return {a.density,  a.period,
-          axis_of(a), a.tolerance,
-          a.exact,    a.sample,
-          job.seed,   a.degree,
-          a.radius,   read_parts(job, a.parts, a.unit, body, a.density, a.resolution, a.repair)};
+GravityOptions gravity_options(const Job& job, const Arguments& a, const GravityBody& body) {
+  return {a.density,     a.period,
+          parse_axis(a), a.tolerance,
+          a.exact,       a.sample,
+          job.seed,      a.degree,
+          a.radius,      read_parts(job, a.parts, a.unit, body, a.density, a.resolution, a.repair)};
 }
 
 void write_outputs(Job& job, const Arguments& a, const GravityBody& body,
@@ -336,8 +336,8 @@ void run(Job& job, const Arguments& a) {
   check(job, a);
   nlohmann::ordered_json repair;
   const GravityBody body = read_gravity_body(job, a.shape, {a.unit}, a.resolution, a.repair, repair);
-  const GravityPlaces places = places_of(job, a, body);
-  const ComputedGravity made = compute_gravity(body, places, options_of(job, a, body),
+  const GravityPlaces places = read_places(job, a, body);
+  const ComputedGravity made = compute_gravity(body, places, gravity_options(job, a, body),
                                                [&](const std::string& stage) { return job.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);

@@ -41,11 +41,11 @@ void write_csv(const std::vector<GravityColumn>& columns, const std::filesystem:
 void write_table(const std::vector<GravityColumn>& columns, const std::filesystem::path& file) {
   const std::array<int, 2> shape{static_cast<int>(columns.front().values.size()),
                                  static_cast<int>(columns.size())};
-  write_npy(rows_of(columns), shape, file);
+  write_npy(interleave(columns), shape, file);
 }
 
 // Values of facets become those of vertices: means over the facets around each.
-std::vector<double> values_of_vertices(const TriangleMesh& mesh, const std::vector<double>& values) {
+std::vector<double> vertex_values(const TriangleMesh& mesh, const std::vector<double>& values) {
   if (values.size() == mesh.vertices.size()) return values;
   std::vector<double> sums(mesh.vertices.size()), counts(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -89,7 +89,7 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 void write_gravity_preview(const Job& job, const GravityBody& body, const GravityColumn& column,
                            const std::vector<LandingSite>& sites, const PictureOptions& look,
                            const std::filesystem::path& file) {
-  const std::vector<double> values = values_of_vertices(body.mesh, column.values);
+  const std::vector<double> values = vertex_values(body.mesh, column.values);
   const ValueRange range = value_range(values);
   PreviewOptions options = look.options(job, body.mesh, body.unit);
   options.vertex_colors = sequential_colors(values, range.low, range.high);

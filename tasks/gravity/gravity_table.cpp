@@ -59,9 +59,9 @@ std::vector<Vec3d> in_metres(std::span<const Vec3d> points, double metres) {
 std::vector<GravityColumn> gravity_columns(const GravityPlaces& places, std::span<const PointGravity> values,
                                            const SurfaceMeans& means) {
   std::vector<GravityColumn> columns;
-  const auto add = [&](const char* name, const auto& value_of) {
+  const auto add = [&](const char* name, const auto& find_value) {
     GravityColumn column{name, {}};
-    for (std::size_t i = 0; i < values.size(); ++i) column.values.push_back(value_of(i));
+    for (std::size_t i = 0; i < values.size(); ++i) column.values.push_back(find_value(i));
     columns.push_back(std::move(column));
   };
   add("x", [&](std::size_t i) { return places.points[i].x; });
@@ -105,7 +105,7 @@ Json surface_json(const GravityPlaces& places, std::span<const PointGravity> val
   return json;
 }
 
-std::vector<double> rows_of(std::span<const GravityColumn> columns) {
+std::vector<double> interleave(std::span<const GravityColumn> columns) {
   const std::size_t rows = columns.front().values.size();
   std::vector<double> table;
   table.reserve(rows * columns.size());

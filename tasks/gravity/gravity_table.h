@@ -43,7 +43,7 @@ nlohmann::ordered_json surface_json(const GravityPlaces& places, std::span<const
                                     const SurfaceMeans& means);
 
 // The columns side by side, row after row.
-std::vector<double> rows_of(std::span<const GravityColumn> columns);
+std::vector<double> interleave(std::span<const GravityColumn> columns);
 
 nlohmann::ordered_json error_json(const AchievedError& error, double tolerance);
 

@@ -154,7 +154,7 @@ class SiteFinder {
     tree_ = BoxTree(boxes);
   }
 
-  Vec3d center_of(std::size_t facet) const {
+  Vec3d facet_center(std::size_t facet) const {
     const auto& [a, b, c] = mesh_.triangles[facet];
     return (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) * (1.0 / 3.0);
   }
@@ -164,7 +164,7 @@ class SiteFinder {
     LandingSite site;
     site.side = side_;
     site.cost = std::numeric_limits<double>::infinity();
-    site.center = center_of(facet);
+    site.center = facet_center(facet);
     const double reach = 0.5 * std::numbers::sqrt3 * side_;
     const Vec3d r{reach, reach, reach};
     const std::vector<std::uint32_t> near = tree_.touching({site.center - r, site.center + r});
@@ -222,15 +222,15 @@ class SiteFinder {
 };
 
 // The facets of a site, about.
-double facets_of_site(const TriangleMesh& mesh, double side) {
+double facets_per_site(const TriangleMesh& mesh, double side) {
   return std::max(1.0, 2.0 * side * side * static_cast<double>(mesh.triangles.size()) / surface_area(mesh));
 }
 
 // How many facets lie between two that are tried, so that the search stays within a minute.
-std::size_t stride_of(const TriangleMesh& mesh, double side) {
+std::size_t cut_stride(const TriangleMesh& mesh, double side) {
   constexpr double kMostCuts = 2e7;
   const auto facets = static_cast<double>(mesh.triangles.size());
-  return static_cast<std::size_t>(std::ceil(facets * facets_of_site(mesh, side) / kMostCuts));
+  return static_cast<std::size_t>(std::ceil(facets * facets_per_site(mesh, side) / kMostCuts));
 }
 
 void add_place(LandingSite& site) {
@@ -245,12 +245,12 @@ std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<c
                                             const SiteSearch& search, const Progress& progress) {
   check_side(body.mesh, search.side);
   const SiteFinder finder(body.mesh, slopes, search.side);
-  const std::size_t stride = stride_of(body.mesh, search.side);
+  const std::size_t stride = cut_stride(body.mesh, search.side);
   const std::size_t tried = (body.mesh.triangles.size() + stride - 1) / stride;
   std::vector<double> costs(tried);
   constexpr double kCutsAtOnce = 1e5;  // between two reports of progress
   const auto at_once =
-      static_cast<std::size_t>(std::max(64.0, kCutsAtOnce / facets_of_site(body.mesh, search.side)));
+      static_cast<std::size_t>(std::max(64.0, kCutsAtOnce / facets_per_site(body.mesh, search.side)));
   for (std::size_t first = 0; first < tried; first += at_once) {
     const std::size_t end = std::min(first + at_once, tried);
     parallel_for(static_cast<std::int64_t>(first), static_cast<std::int64_t>(end), [&](std::int64_t i) {
@@ -268,7 +268,7 @@ std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<c
   std::vector<Vec3d> centers;
   for (const std::size_t i : order) {
     if (static_cast<int>(taken.size()) == search.count || !std::isfinite(costs[i])) break;
-    const Vec3d center = finder.center_of(i * stride);
+    const Vec3d center = finder.facet_center(i * stride);
     const auto too_near = [&](const Vec3d& other) { return norm(other - center) < search.distance; };
     if (std::any_of(centers.begin(), centers.end(), too_near)) continue;
     taken.push_back(i * stride);

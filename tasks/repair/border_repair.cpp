@@ -15,7 +15,7 @@ namespace astrolith {
 namespace {
 
 // Two ends of a border edge are never joined: less than half of the edge.
-constexpr double kReachOfEdge = 0.45;
+constexpr double kReachPerEdge = 0.45;
 // A vertex lies on a border edge when it is nearer to it than this share of the edge, and farther than this
 // share from its ends.
 constexpr double kBesideEdge = 0.2, kFromEnds = 0.02;
@@ -36,9 +36,9 @@ struct Border {
   BoxTree tree;                         // of the places of `vertices`
 };
 
-Box box_of(const Vec3d& p, double reach) { return widened(Box{p, p}, reach); }
+Box reach_box(const Vec3d& p, double reach) { return widened(Box{p, p}, reach); }
 
-Border border_of(const TriangleMesh& mesh, double most_reach) {
+Border find_border(const TriangleMesh& mesh, double most_reach) {
   Border border;
   border.reach.assign(mesh.vertices.size(), most_reach);
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
@@ -47,13 +47,13 @@ Border border_of(const TriangleMesh& mesh, double most_reach) {
     const double length = norm(mesh.vertices[edge[0].low] - mesh.vertices[edge[0].high]);
     for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
       border.vertices.push_back(v);
-      border.reach[v] = std::min(border.reach[v], kReachOfEdge * length);
+      border.reach[v] = std::min(border.reach[v], kReachPerEdge * length);
     }
   });
   std::sort(border.vertices.begin(), border.vertices.end());
   border.vertices.erase(std::unique(border.vertices.begin(), border.vertices.end()), border.vertices.end());
   std::vector<Box> boxes;
-  for (const std::uint32_t v : border.vertices) boxes.push_back(box_of(mesh.vertices[v], 0.0));
+  for (const std::uint32_t v : border.vertices) boxes.push_back(reach_box(mesh.vertices[v], 0.0));
   border.tree = BoxTree(boxes);
   return border;
 }
@@ -79,7 +79,8 @@ std::vector<std::uint32_t> nearest_border_vertices(const TriangleMesh& mesh, con
   Crowd crowd(name, border.vertices.size());
   std::vector<std::uint32_t> nearest(mesh.vertices.size(), kNone);
   for (const std::uint32_t v : border.vertices) {
-    const std::vector<std::uint32_t> found = border.tree.touching(box_of(mesh.vertices[v], border.reach[v]));
+    const std::vector<std::uint32_t> found =
+        border.tree.touching(reach_box(mesh.vertices[v], border.reach[v]));
     crowd.count(found.size());
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : found) {
@@ -96,7 +97,7 @@ std::vector<std::uint32_t> nearest_border_vertices(const TriangleMesh& mesh, con
 // Joins pairs of border vertices that are each other's nearest; the first of the mesh stays in place.
 std::int64_t join_vertices(JoinedBorders& joined, double most_reach, const std::string& name) {
   TriangleMesh& mesh = joined.mesh;
-  const Border border = border_of(mesh, most_reach);
+  const Border border = find_border(mesh, most_reach);
   const std::vector<std::uint32_t> nearest = nearest_border_vertices(mesh, border, name);
   std::int64_t count = 0;
   for (const std::uint32_t v : border.vertices) {
@@ -114,7 +115,7 @@ std::int64_t join_vertices(JoinedBorders& joined, double most_reach, const std::
 // Gives border vertices at nearly one place the coordinates of the first.
 void join_places(JoinedBorders& joined) {
   TriangleMesh& mesh = joined.mesh;
-  const Border border = border_of(mesh, 0.0);
+  const Border border = find_border(mesh, 0.0);
   TriangleMesh places;
   for (const std::uint32_t v : border.vertices) {
     const auto i = static_cast<std::uint32_t>(places.vertices.size());
@@ -149,7 +150,7 @@ std::vector<VertexOnEdge> vertices_on(const TriangleMesh& mesh, const Border& bo
   const Vec3d a = mesh.vertices[facet[side.corner]], b = mesh.vertices[facet[(side.corner + 1u) % 3]];
   const double length = norm(b - a);
   const double reach = std::min(kBesideEdge * length, most_reach);
-  Box box = box_of(a, reach);
+  Box box = reach_box(a, reach);
   box.extend(widened(Box{b, b}, reach).min);
   box.extend(widened(Box{b, b}, reach).max);
   const std::vector<std::uint32_t> found = border.tree.touching(box);
@@ -175,7 +176,7 @@ std::vector<VertexOnEdge> vertices_on(const TriangleMesh& mesh, const Border& bo
 // Splits facets at the border vertices on one of their border edges.
 std::int64_t split_facets(JoinedBorders& joined, double most_reach, const std::string& name) {
   TriangleMesh& mesh = joined.mesh;
-  const Border border = border_of(mesh, most_reach);
+  const Border border = find_border(mesh, most_reach);
   Crowd crowd(name, border.sides.size());
   std::map<std::uint32_t, std::vector<Triangle>> parts;  // by facet
   for (const TriangleSide& side : border.sides) {

@@ -46,14 +46,14 @@ constexpr std::size_t kFewestFairEdges = 6;
 constexpr unsigned int kMostCrossings = 20000;
 constexpr double kMostCrossingShare = 0.02;
 
-std::vector<Point> points_of(const TriangleMesh& mesh) {
+std::vector<Point> to_points(const TriangleMesh& mesh) {
   std::vector<Point> points;
   points.reserve(mesh.vertices.size());
   for (const Vec3d& p : mesh.vertices) points.emplace_back(p.x, p.y, p.z);
   return points;
 }
 
-Soup soup_of(const TriangleMesh& mesh) {
+Soup to_soup(const TriangleMesh& mesh) {
   Soup soup;
   soup.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) soup.push_back({a, b, c});
@@ -61,16 +61,16 @@ Soup soup_of(const TriangleMesh& mesh) {
 }
 
 // A mesh of polygons, cut open where edges or vertices are not manifold.
-SurfaceMesh surface_of(const TriangleMesh& mesh) {
-  std::vector<Point> points = points_of(mesh);
-  Soup soup = soup_of(mesh);
+SurfaceMesh to_surface(const TriangleMesh& mesh) {
+  std::vector<Point> points = to_points(mesh);
+  Soup soup = to_soup(mesh);
   PMP::orient_polygon_soup(points, soup);
   SurfaceMesh surface;
   PMP::polygon_soup_to_polygon_mesh(points, soup, surface);
   return surface;
 }
 
-TriangleMesh mesh_of(const SurfaceMesh& surface) {
+TriangleMesh to_mesh(const SurfaceMesh& surface) {
   TriangleMesh mesh;
   std::vector<std::uint32_t> number(surface.num_vertices() + surface.number_of_removed_vertices());
   mesh.vertices.reserve(surface.number_of_vertices());
@@ -91,11 +91,11 @@ TriangleMesh mesh_of(const SurfaceMesh& surface) {
   return mesh;
 }
 
-double area_of(const SurfaceMesh& surface, const std::vector<Facet>& facets) {
+double facet_area(const SurfaceMesh& surface, const std::vector<Facet>& facets) {
   return PMP::area(facets, surface);
 }
 
-std::size_t edges_of_hole(const SurfaceMesh& surface, HalfEdge border) {
+std::size_t hole_edges(const SurfaceMesh& surface, HalfEdge border) {
   return CGAL::halfedges_around_face(border, surface).size();
 }
 
@@ -117,7 +117,7 @@ std::vector<Facet> fill_hole(SurfaceMesh& surface, HalfEdge border, std::size_t 
 
 FilledMesh fill_holes(const TriangleMesh& mesh, const std::string& name, const Progress& progress) {
   return guarded(name, "its holes cannot be filled", [&] {
-    SurfaceMesh surface = surface_of(mesh);
+    SurfaceMesh surface = to_surface(mesh);
     FilledMesh filled;
     filled.stitched_edges = static_cast<std::int64_t>(PMP::stitch_borders(surface));
     std::vector<HalfEdge> borders;
@@ -127,7 +127,7 @@ FilledMesh fill_holes(const TriangleMesh& mesh, const std::string& name, const P
       if (!report(progress, static_cast<double>(i) / static_cast<double>(borders.size()), "holes")) {
         throw WorkError("stopped while the holes of the mesh were filled");
       }
-      const std::size_t edges = edges_of_hole(surface, borders[i]);
+      const std::size_t edges = hole_edges(surface, borders[i]);
       const double cubed = static_cast<double>(edges) * static_cast<double>(edges * edges) / 6.0;
       const bool counted = edges > kUncountedEdges;
       const bool cubic = !counted || (edges <= kMostCubicEdges && steps + cubed <= kMostCubicSteps);
@@ -136,16 +136,16 @@ FilledMesh fill_holes(const TriangleMesh& mesh, const std::string& name, const P
       if (facets.empty()) {
         throw InputError(name + ": has a hole of " + std::to_string(edges) + " edges that cannot be filled");
       }
-      filled.holes.push_back(area_of(surface, facets));
+      filled.holes.push_back(facet_area(surface, facets));
     }
-    filled.mesh = mesh_of(surface);
+    filled.mesh = to_mesh(surface);
     return filled;
   });
 }
 
 UncrossedMesh remove_crossings(const TriangleMesh& mesh, const std::string& name, const Progress& progress) {
   return guarded(name, "its crossings cannot be removed", [&] {
-    SurfaceMesh surface = surface_of(mesh);
+    SurfaceMesh surface = to_surface(mesh);
     std::vector<std::pair<Facet, Facet>> pairs;
     PMP::self_intersections(surface, std::back_inserter(pairs),
                             CGAL::parameters::maximum_number(kMostCrossings));
@@ -163,22 +163,22 @@ UncrossedMesh remove_crossings(const TriangleMesh& mesh, const std::string& name
                        " of " + std::to_string(surface.number_of_faces()) + ")");
     }
     if (!report(progress, 0.3, "crossings")) throw WorkError("stopped while the mesh was repaired");
-    uncrossed.free_of_crossings = crossing.empty() || PMP::experimental::remove_self_intersections(surface);
-    uncrossed.mesh = mesh_of(surface);
+    uncrossed.has_no_crossings = crossing.empty() || PMP::experimental::remove_self_intersections(surface);
+    uncrossed.mesh = to_mesh(surface);
     return uncrossed;
   });
 }
 
 TriangleMesh alpha_wrapped(const TriangleMesh& mesh, double alpha, double offset, const std::string& name) {
   return guarded(name, "cannot be wrapped", [&] {
-    const std::vector<Point> points = points_of(mesh);
+    const std::vector<Point> points = to_points(mesh);
     SurfaceMesh wrap;
     if (mesh.triangles.empty()) {
       CGAL::alpha_wrap_3(points, alpha, offset, wrap);
     } else {
-      CGAL::alpha_wrap_3(points, soup_of(mesh), alpha, offset, wrap);
+      CGAL::alpha_wrap_3(points, to_soup(mesh), alpha, offset, wrap);
     }
-    return mesh_of(wrap);
+    return to_mesh(wrap);
   });
 }
 

@@ -26,7 +26,7 @@ FilledMesh fill_holes(const TriangleMesh& mesh, const std::string& name, const P
 struct UncrossedMesh {
   TriangleMesh mesh;
   std::int64_t crossing_facets = 0;  // facets that passed through others
-  bool free_of_crossings = false;
+  bool has_no_crossings = false;
 };
 
 // Replaces the facets of a closed mesh that pass through others. Throws InputError where they are too many.

@@ -65,8 +65,8 @@ struct Solid {
 
 // The solid that a hollow lies in: the smallest that holds it. `parts` has the largest first. None where the
 // hollow reaches out of all of them.
-std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<SurfacePart>& parts,
-                                    PartNesting& nesting) {
+std::optional<std::size_t> find_owner(std::size_t hollow, const std::vector<SurfacePart>& parts,
+                                      PartNesting& nesting) {
   for (std::size_t i = hollow; i-- > 0;) {
     if (parts[i].volume > 0.0 && nesting.lies_inside(parts[hollow], parts[i])) return i;
   }
@@ -74,8 +74,8 @@ std::optional<std::size_t> owner_of(std::size_t hollow, const std::vector<Surfac
 }
 
 // All solids, the largest first. A cavity, whose volume is negative, is a hollow.
-std::vector<Solid> solids_of(const TriangleMesh& mesh) {
-  std::vector<SurfacePart> parts = parts_of(mesh, triangle_components(mesh));
+std::vector<Solid> find_solids(const TriangleMesh& mesh) {
+  std::vector<SurfacePart> parts = split_parts(mesh, triangle_components(mesh));
   std::stable_sort(parts.begin(), parts.end(), [](const SurfacePart& a, const SurfacePart& b) {
     return std::abs(a.volume) > std::abs(b.volume);
   });
@@ -85,7 +85,7 @@ std::vector<Solid> solids_of(const TriangleMesh& mesh) {
     solids.push_back({exact_mesh(parts[i].mesh), parts[i].volume < 0.0, {}});
     if (!solids.back().hollow) continue;
     PMP::reverse_face_orientations(solids.back().mesh);
-    solids.back().owner = owner_of(i, parts, nesting);
+    solids.back().owner = find_owner(i, parts, nesting);
   }
   return solids;
 }
@@ -110,7 +110,7 @@ void combine(ExactMesh& mesh, Solid& solid, const std::string& failed) {
 TriangleMesh united(const TriangleMesh& mesh, const std::string& name, const Progress& progress) {
   const std::string failed = "its parts cannot be united";
   return guarded(name, failed, [&] {
-    std::vector<Solid> solids = solids_of(mesh);
+    std::vector<Solid> solids = find_solids(mesh);
     // A cavity is cut out of its own solid. Another solid may fill it.
     for (Solid& solid : solids) {
       if (solid.owner) combine(solids[*solid.owner].mesh, solid, name + ": " + failed);

@@ -19,7 +19,7 @@ struct Patches {
   double whole = 0.0;
 };
 
-Patches patches_of(const TriangleMesh& mesh, bool across_all_edges) {
+Patches find_patches(const TriangleMesh& mesh, bool across_all_edges) {
   const std::size_t count = mesh.triangles.size();
   Patches patches{DisjointSets(count), std::vector<char>(count), std::vector<char>(count),
                   std::vector<double>(count), 0.0};
@@ -66,7 +66,7 @@ std::int64_t drop_facets(WithoutFins& result, const Drop& drop) {
 WithoutFins without_fins(TriangleMesh mesh) {
   WithoutFins result{std::move(mesh)};
   for (int round = 0; round < kFinRounds; ++round) {
-    Patches patches = patches_of(result.mesh, false);
+    Patches patches = find_patches(result.mesh, false);
     const auto is_fin = [&](std::uint32_t f) {
       const std::uint32_t p = patches.sets.find(f);
       return patches.open[p] != 0 && patches.hangs[p] != 0 && patches.area[p] <= kLargestFin * patches.whole;
@@ -78,7 +78,7 @@ WithoutFins without_fins(TriangleMesh mesh) {
 
 WithoutFins without_debris(TriangleMesh mesh) {
   WithoutFins result{std::move(mesh)};
-  Patches pieces = patches_of(result.mesh, true);
+  Patches pieces = find_patches(result.mesh, true);
   drop_facets(result, [&](std::uint32_t f) {
     const std::uint32_t p = pieces.sets.find(f);
     return pieces.open[p] != 0 && pieces.area[p] <= kLargestDebris * pieces.whole;

@@ -197,7 +197,7 @@ double distance_moved(const TriangleMesh& mesh, const TriangleMesh& old) {
 void uncross(MeshRepair& repair, const std::string& name, const Progress& progress) {
   const TriangleMesh old = repair.mesh;
   UncrossedMesh uncrossed = remove_crossings(repair.mesh, name, progress);
-  if (!uncrossed.free_of_crossings) throw InputError(name + ": its crossings cannot be removed");
+  if (!uncrossed.has_no_crossings) throw InputError(name + ": its crossings cannot be removed");
   repair.crossing_facets = uncrossed.crossing_facets;
   repair.mesh = without_unused_vertices(uncrossed.mesh);
   repair.moved = std::max(repair.moved, distance_moved(repair.mesh, old));
@@ -246,7 +246,7 @@ bool weld_and_orient(MeshRepair& repair) {
 }
 
 // The distance between neighbours of a cloud of points: nine in ten have one nearer than this.
-double spacing_of(const std::vector<Vec3d>& points) {
+double mean_spacing(const std::vector<Vec3d>& points) {
   constexpr int kNeighbours = 3;
   const std::vector<std::uint32_t> nearest = nearest_neighbours(points, kNeighbours);
   std::vector<double> distances;
@@ -294,16 +294,16 @@ MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Prog
                        " points; a wrap needs at least 16");
     }
     constexpr double kSpacings = 3.0;  // a ball of this radius does not fall between neighbours
-    repair.wrap_alpha = std::max(repair.wrap_alpha, kSpacings * spacing_of(mesh.vertices));
+    repair.wrap_alpha = std::max(repair.wrap_alpha, kSpacings * mean_spacing(mesh.vertices));
   }
   const double finest = repair.wrap_alpha;
   double inside = 0.0;  // volume of the wrap so far
   for (const double alpha : {27.0 * finest, 9.0 * finest, 3.0 * finest, finest}) {
     tell(progress, 0.5 * finest / alpha, "wrap");
     TriangleMesh wrap = alpha_wrapped(mesh, alpha, repair.wrap_offset, name);
-    const double volume_of_wrap = wrap.triangles.empty() ? 0.0 : std::abs(volume(wrap));
-    if (volume_of_wrap <= kStillFilled * inside) break;
-    inside = volume_of_wrap;
+    const double wrap_volume = wrap.triangles.empty() ? 0.0 : std::abs(volume(wrap));
+    if (wrap_volume <= kStillFilled * inside) break;
+    inside = wrap_volume;
     repair.wrap_alpha = alpha;
     repair.mesh = std::move(wrap);
   }
@@ -331,13 +331,13 @@ void require_finite(const TriangleMesh& mesh, const std::string& name) {
 
 // Keeps the largest body of a scene, or all, and says how its parts lie to one another.
 void sort_bodies(MeshRepair& repair, bool all_parts) {
-  SceneBodies scene = bodies_of_scene(repair.mesh);
+  SceneBodies scene = find_bodies(repair.mesh);
   repair.bodies = scene.bodies;
   if (scene.bodies > 1 && !all_parts) {
     repair.changed = true;
     repair.kept_volume = scene.volume_share;
     repair.mesh = without_unused_vertices(scene.largest);
-    scene = bodies_of_scene(repair.mesh);
+    scene = find_bodies(repair.mesh);
   }
   repair.overlapping_parts = scene.overlapping;
   repair.nested_parts = scene.nested;

@@ -106,7 +106,7 @@ std::string repair_words(const MeshRepair& repair, const std::string& unit,
                          const RepairOptions& options = {});
 
 // Whether the mesh has several parts, of which the words say how they lie.
-bool says_of_parts(const MeshRepair& repair);
+bool mentions_parts(const MeshRepair& repair);
 
 // The fields repair.* of apps/summary_fields.json.
 nlohmann::ordered_json repair_json(const MeshRepair& repair);

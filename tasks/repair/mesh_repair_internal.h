@@ -22,7 +22,7 @@ struct SceneBodies {
 // The body of greatest volume, with its cavities and with the lobes that overlap it, and how the components
 // lie to one another. The mesh is closed and wound alike. Beyond 64 components the smaller ones count for
 // bodies of their own, unless their boxes touch that of a greater one.
-SceneBodies bodies_of_scene(TriangleMesh mesh);
+SceneBodies find_bodies(TriangleMesh mesh);
 
 struct JoinedBorders {
   TriangleMesh mesh;

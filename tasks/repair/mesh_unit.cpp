@@ -9,7 +9,7 @@
 
 namespace astrolith {
 
-MeshUnit unit_of_mesh(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
+MeshUnit resolve_unit(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
                       std::initializer_list<std::string_view> units) {
   const auto& [stated, label] = stated_unit(file);
   if (stated.empty()) {

@@ -35,7 +35,7 @@ struct MeshUnit {
 // The unit of a mesh's lengths: the given one, else what the file or its label states, else `otherwise`. Says
 // so where the file states another unit than the given one, and where a label decides. Throws InputError
 // where the file's unit decides and is none of `units`; any unit will do where these are none.
-MeshUnit unit_of_mesh(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
+MeshUnit resolve_unit(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
                       std::initializer_list<std::string_view> units);
 
 struct KnownBody {

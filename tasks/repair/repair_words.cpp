@@ -22,7 +22,7 @@ std::string moved_words(const MeshRepair& repair, const std::string& unit) {
   return fmt::format("nothing moved by more than {:.2g} % of the diagonal", 100.0 * bound / repair.diagonal);
 }
 
-std::string words_of_bodies(const MeshRepair& repair) {
+std::string describe_bodies(const MeshRepair& repair) {
   if (repair.bodies == 1) return "";
   return fmt::format("holds {} bodies apart from one another", repair.bodies) +
          (repair.kept_volume < 1.0
@@ -31,7 +31,7 @@ std::string words_of_bodies(const MeshRepair& repair) {
 }
 
 // "1 part reaches into a larger one and 2 lie inside a larger one".
-std::string words_of_overlaps(const MeshRepair& repair, const std::string& overlap) {
+std::string describe_overlaps(const MeshRepair& repair, const std::string& overlap) {
   std::string words;
   if (repair.overlapping_parts > 0) {
     words = fmt::format("{} into a larger one",
@@ -58,7 +58,7 @@ void append(std::string& words, const std::string& more) {
 
 }  // namespace
 
-bool says_of_parts(const MeshRepair& repair) {
+bool mentions_parts(const MeshRepair& repair) {
   return repair.bodies > 1 ||
          repair.overlapping_parts + repair.nested_parts + repair.cavities + repair.undecided_parts > 0;
 }
@@ -87,8 +87,8 @@ std::string repair_words(const MeshRepair& repair, const std::string& unit, cons
   std::string words;
   for (const std::string& item : done) words += item + ", ";
   if (!words.empty()) words += moved_words(repair, unit);
-  append(words, words_of_bodies(repair));
-  append(words, words_of_overlaps(repair, options.overlap));
+  append(words, describe_bodies(repair));
+  append(words, describe_overlaps(repair, options.overlap));
   if (repair.cavities > 0) append(words, count_words(repair.cavities, "cavity", "cavities"));
   return words;
 }

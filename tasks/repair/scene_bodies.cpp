@@ -55,12 +55,12 @@ std::vector<std::uint32_t> sorted_into_bodies(const std::vector<SurfacePart>& pa
 
 }  // namespace
 
-SceneBodies bodies_of_scene(TriangleMesh mesh) {
+SceneBodies find_bodies(TriangleMesh mesh) {
   const std::vector<std::uint32_t> number = triangle_components(mesh);
   SceneBodies scene;
   scene.largest = std::move(mesh);
   if (std::all_of(number.begin(), number.end(), [](std::uint32_t c) { return c == 0; })) return scene;
-  const std::vector<SurfacePart> parts = parts_of(scene.largest, number);
+  const std::vector<SurfacePart> parts = split_parts(scene.largest, number);
   const std::vector<std::uint32_t> body = sorted_into_bodies(parts, scene);
   std::vector<double> volumes(parts.size(), 0.0);  // at the component that names the body
   double all = 0.0;

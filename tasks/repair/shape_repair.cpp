@@ -13,7 +13,7 @@ TriangleMesh told(const Job& job, MeshRepair repair, const std::string& name, co
   if (const std::string words = repair_words(repair, unit, options); !words.empty()) {
     job.say(name + ": " + words);
   }
-  if (repair.changed || says_of_parts(repair)) figures = repair_json(repair);
+  if (repair.changed || mentions_parts(repair)) figures = repair_json(repair);
   return std::move(repair.mesh);
 }
 

@@ -316,10 +316,9 @@ std::string lacking_on_gpu(const MeshPart& part) {
   if (region.is_patch) {
     const PatchPlace place(region.center, region.axes);
     return obstacle_on_gpu(part.field.patch_tables(),
-                           block_side(grid_of_patch(place, region.size, part.resolution)));
+                           block_side(patch_grid(place, region.size, part.resolution)));
   }
-  return obstacle_on_gpu(part.field.tables(),
-                         block_side(grid_of_field(part.field.bounds(), part.resolution)));
+  return obstacle_on_gpu(part.field.tables(), block_side(field_grid(part.field.bounds(), part.resolution)));
 }
 
 MeshStatistics mesh_part(const MeshPart& part, MeshSink& sink, const Progress& progress) {

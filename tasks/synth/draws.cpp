@@ -64,10 +64,10 @@ void set_axes(const std::string& text, DrawConditions& draw) {
 }
 
 template <class T, std::size_t n>
-void set_word(const std::string& text, const T (&values)[n], std::string_view (*word_of)(T),
+void set_word(const std::string& text, const T (&values)[n], std::string_view (*to_word)(T),
               std::optional<T>& value) {
   for (const T candidate : values) {
-    if (word_of(candidate) == text) value = candidate;
+    if (to_word(candidate) == text) value = candidate;
   }
 }
 

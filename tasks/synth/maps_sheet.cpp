@@ -45,7 +45,7 @@ SurfaceMaps look_up(const TriangleMesh& mesh, const MeshSkin& skin, const BakedM
       const std::uint32_t corner = coordinates.triangles[triangle][k];
       const VertexTangent& along = skin.tangents[corner];
       for (std::size_t i = 0; i < 2; ++i) uv[i] += weights[k] * coordinates.uv[corner][i];
-      normal += weights[k] * to_float(mesh.normals[coordinates.vertex_of[corner]]);
+      normal += weights[k] * to_float(mesh.normals[coordinates.mesh_vertex[corner]]);
       tangent += weights[k] * Vec3f{along[0], along[1], along[2]};
       sign = along[3];
     }

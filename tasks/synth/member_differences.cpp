@@ -72,10 +72,10 @@ double silhouette_difference(const TriangleMesh& a, const TriangleMesh& b) {
   frame.extend(b.bounds().min), frame.extend(b.bounds().max);
   std::int64_t either = 0, one = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Silhouette of_a(a, frame, axis), of_b(b, frame, axis);
-    for (std::size_t i = 0; i < of_a.covered().size(); ++i) {
-      either += of_a.covered()[i] | of_b.covered()[i];
-      one += of_a.covered()[i] ^ of_b.covered()[i];
+    const Silhouette silhouette_a(a, frame, axis), silhouette_b(b, frame, axis);
+    for (std::size_t i = 0; i < silhouette_a.covered().size(); ++i) {
+      either += silhouette_a.covered()[i] | silhouette_b.covered()[i];
+      one += silhouette_a.covered()[i] ^ silhouette_b.covered()[i];
     }
   }
   return either == 0 ? 0.0 : static_cast<double>(one) / static_cast<double>(either);

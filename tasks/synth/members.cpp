@@ -268,7 +268,8 @@ Tally make_range(Job& job, const MemberMaker& maker, const MemberRange& range, i
 // How many of some members are made at once. A small mesh leaves threads idle, a large one needs memory: more
 // is set aside for each than a mesh with gravity and a picture, or a batch of a GPU, is known to take.
 int members_at_once(const MeshJob& mesh, std::uint64_t members) {
-  constexpr double kMostTriangles = 1e6, kBytesOfTriangle = 600.0, kBytesOfTexel = 60.0, kBytesOnGpu = 1.5e9;
+  constexpr double kMostTriangles = 1e6, kBytesPerTriangle = 600.0, kBytesPerTexel = 60.0,
+                   kBytesOnGpu = 1.5e9;
   constexpr double kTrianglesPerSquare =
       5.0;  // of a mesh for the square of its resolution, with some roughness
   const MeshSpec& spec = mesh.spec;
@@ -276,8 +277,8 @@ int members_at_once(const MeshJob& mesh, std::uint64_t members) {
       spec.triangles > 0.0 ? spec.triangles : kTrianglesPerSquare * spec.resolution * spec.resolution;
   if (triangles > kMostTriangles || mesh.max_memory_gb > 0.0) return 1;
   double most = std::min(static_cast<double>(thread_limit()), static_cast<double>(members));
-  const double map_bytes = kBytesOfTexel * mesh.sinks.bake * mesh.sinks.bake;
-  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesOfTriangle * triangles + map_bytes));
+  const double map_bytes = kBytesPerTexel * mesh.sinks.bake * mesh.sinks.bake;
+  most = std::min(most, 0.5 * memory_limit(0.0) / (kBytesPerTriangle * triangles + map_bytes));
   if (mesh.device.has_gpu())
     most = std::min(most, static_cast<double>(probe_device().memory_bytes) / kBytesOnGpu);
   return std::max(1, static_cast<int>(most));
@@ -437,7 +438,7 @@ void predict_members(Job& job, const MembersRequest& request, const MeshJob& ask
   const double start = job.seconds();
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
-    const double on_clock = job.seconds(), of_processor = job.processor_seconds(),
+    const double on_clock = job.seconds(), processor_before = job.processor_seconds(),
                  held = static_cast<double>(resident_bytes());
     JobPart part(job);
     const Recipe member = source.draw(part, number).recipe;
@@ -448,10 +449,11 @@ void predict_members(Job& job, const MembersRequest& request, const MeshJob& ask
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();
     peak = std::max(peak, held + at_once * (figures["peak_bytes"].get<double>() - held));
-    const double of_member = figures["processor_seconds"].get<double>() - of_processor;
-    processor += share * of_member;
-    seconds += share * (at_once > 1 ? of_member / at_once
-                                    : figures["seconds"].get<double>() - std::min(on_clock, of_processor));
+    const double member_seconds = figures["processor_seconds"].get<double>() - processor_before;
+    processor += share * member_seconds;
+    seconds +=
+        share * (at_once > 1 ? member_seconds / at_once
+                             : figures["seconds"].get<double>() - std::min(on_clock, processor_before));
   }
   job.summary["predicted"] = {{"triangles", triangles},
                               {"file_bytes", file_bytes},

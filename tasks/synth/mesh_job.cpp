@@ -39,7 +39,7 @@ class PointsOnly : public MeshSink {
 };
 
 // Measures the box of all vertices.
-class ExtentOfMesh : public MeshSink {
+class MeshExtent : public MeshSink {
  public:
   void add_vertices(std::span<const MeshVertex> vertices) override {
     for (const MeshVertex& v : vertices) box.extend({v.position.x, v.position.y, v.position.z});
@@ -167,7 +167,7 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
   const Recipe& recipe = part.recipe;
   const Region& region = part.region;
   MeshOutput output(job.tool(), mesh, part);
-  ExtentOfMesh extent;
+  MeshExtent extent;
   output.add(extent);
   std::optional<TileBorder> border;
   if (!spec.tile.empty() && !spec.points && !sinks.file.empty()) {
@@ -175,7 +175,7 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
     output.add(border.emplace(planes.lower, planes.upper));
   }
   BodyMeshReport made = make_body_mesh(part, output, job.stages());
-  const TileFigures tile_figures_made = border ? tile_figures(*border, made.manifold) : TileFigures{};
+  const TileFigures border_figures = border ? tile_figures(*border, made.manifold) : TileFigures{};
   report_making(job, part, made);
   TriangleMesh& collected = output.collected();
   if (recipe.erosion) {
@@ -217,7 +217,7 @@ void make_files(Job& job, const MeshJob& mesh, const MeshPart& part, const Chose
                                                   .length_unit = recipe.length_unit,
                                                   .file = sinks.file.filename().string(),
                                                   .file_sha256 = job.summary["sha256"],
-                                                  .figures = tile_figures_made});
+                                                  .figures = border_figures});
   }
   const std::string name = sinks.file.string();
   if (made.manifold.triangles == 0) return job.say(name + ": no surface lies in tile " + spec.tile);

@@ -145,8 +145,8 @@ void declare_mesh_options(Job& job, MeshJob& mesh) {
       .placeholder("N")
       .default_text("")
       .needs(uv);
-  for (const char* of_part : {"--tile", "--patch", "--points"}) {
-    job.options.option("--bake").excludes(job.options.option(of_part));
+  for (const char* excluded : {"--tile", "--patch", "--points"}) {
+    job.options.option("--bake").excludes(job.options.option(excluded));
   }
   device.add_to(job.options);
   declare_preview_options(job, sinks.preview);
@@ -179,8 +179,8 @@ void declare_mesh_options(Job& job, MeshJob& mesh) {
                   "sizes, ages and angles (degrees), in the recipe's unit")
       .placeholder("FILE.csv|FILE.json")
       .writes();
-  for (const char* of_one : {"--tile", "--patch", "--points", "--labels", "--gravity"}) {
-    job.options.option("--lod").excludes(job.options.option(of_one));
+  for (const char* excluded : {"--tile", "--patch", "--points", "--labels", "--gravity"}) {
+    job.options.option("--lod").excludes(job.options.option(excluded));
   }
 }
 

@@ -32,11 +32,11 @@ double meshing_bytes(const MeshEstimate& mesh) {
   // Links, counts and parents of the half vertex of a triangle, and what growing arrays leave behind.
   constexpr double kCheck = 0.5 * (64.0 + 4.0 + 8.0) + 26.0;
   if (!(mesh.blocks > 0.0)) return 0.0;
-  const double of_block = mesh.triangles / mesh.blocks;
+  const double block_triangles = mesh.triangles / mesh.blocks;
   // Three layers keep the memory of the largest that they held, while the nodes of the next are culled.
   return mesh.layer_blocks *
-         (3.0 * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) + 3.0 * (mesh.list_bytes + kNode) +
-          of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
+         (3.0 * (sizeof(LayerBlock<kBlockCells>) + block_triangles * kCheck) +
+          3.0 * (mesh.list_bytes + kNode) + block_triangles * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
 }
 
 // The bricks of Gabor impulses that a mesh draws.
@@ -97,8 +97,8 @@ struct ErosionCost {
 };
 
 ErosionCost estimate_erosion(const MeshPart& part, const MeshEstimate& mesh) {
-  constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kCellsOfGravity = 48;
-  constexpr double kDoublingGrowth = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
+  constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kGravityCells = 48;
+  constexpr double kDoublingGrowth = 0.08, kBytesPerFacet = 1250.0, kSecondsPerVertical = 8e-8;
   const Erosion& erosion = *part.recipe.erosion;
   const int cells = std::clamp(mesh.resolution / kCoarser, kFewestCells, kMostCells);
   TriangleMesh coarse = make_coarse_mesh(part.field, cells);
@@ -106,16 +106,16 @@ ErosionCost estimate_erosion(const MeshPart& part, const MeshEstimate& mesh) {
   std::vector<Vec3d> up;
   ErosionCost cost;
   // Gravity is that of a lattice of some cells; each triangle then adds a little.
-  const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
+  const double finer = std::max(std::min(kGravityCells, mesh.resolution) / double(cells), 1.0);
   cost.vertical_seconds = finer * finer * timed([&] {
                             up = vertical_directions(coarse, {erosion.density, erosion.rotation_period});
                           }) +
-                          kSecondsOfVertical * mesh.triangles;
+                          kSecondsPerVertical * mesh.triangles;
   const double ratio = std::max(mesh.triangles / double(coarse.triangles.size()), 1.0);
   cost.slide_seconds = ratio * growth(ratio, kDoublingGrowth) *
                        timed([&] { erode(coarse, up, erosion.talus_angle, erosion.iterations); });
-  const double lattice = std::min(kCellsOfGravity / double(mesh.resolution), 1.0);
-  cost.bytes = std::max(kBytesOfFacet * lattice * lattice - kErosionTables, 0.0) * mesh.triangles;
+  const double lattice = std::min(kGravityCells / double(mesh.resolution), 1.0);
+  cost.bytes = std::max(kBytesPerFacet * lattice * lattice - kErosionTables, 0.0) * mesh.triangles;
   return cost;
 }
 

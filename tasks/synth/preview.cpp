@@ -41,9 +41,9 @@ PixelSize parse_maps_size(const std::string& text) {
 PreviewOptions picture_options(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                                const std::string& unit) {
   PreviewOptions options = request.look.options(job, mesh, unit);
-  const bool of_member = job.options.option("--members").count() > 0;
-  if (of_member && request.look.size.empty()) options.width = 640, options.height = 480;
-  if (of_member || !request.maps.empty()) options.marks = {};
+  const bool is_member = job.options.option("--members").count() > 0;
+  if (is_member && request.look.size.empty()) options.width = 640, options.height = 480;
+  if (is_member || !request.maps.empty()) options.marks = {};
   return options;
 }
 

@@ -62,9 +62,9 @@ std::vector<VertexValues> SurfaceGravity::at_vertices(Job& job, const TriangleMe
   for (Vec3d& p : places.points) p += center;
   const std::vector<Attraction> attractions = gravity_.at(places.points, kTolerance, job.progress("gravity"));
   const std::vector<PointGravity> values = find_values(places.points, attractions);
-  const GravityPlaces of_body = &mesh == &body ? GravityPlaces{} : vertex_places(body);
-  const SurfaceMeans means =
-      &mesh == &body ? surface_means(values, places.areas) : surface_means(at(of_body.points), of_body.areas);
+  const GravityPlaces body_places = &mesh == &body ? GravityPlaces{} : vertex_places(body);
+  const SurfaceMeans means = &mesh == &body ? surface_means(values, places.areas)
+                                            : surface_means(at(body_places.points), body_places.areas);
   job.summary["gravity"] = surface_json(places, values, means);
   job.summary["gravity"]["achieved_error"] = error_json(
       achieved_error(gravity_, places.points, attractions, kSample, job.seed, job.progress("check")),

@@ -153,8 +153,8 @@ void declare_options(Job& job, SynthOptions& options) {
     if (std::ranges::find(kTextureOptions, row->name()) == std::end(kTextureOptions))
       job.options.option("--texture").excludes(job.options.option(row->name()));
   }
-  for (const char* of_one : {"--texture", "--tile", "--page"}) {
-    job.options.option("--members").excludes(job.options.option(of_one));
+  for (const char* excluded : {"--texture", "--tile", "--page"}) {
+    job.options.option("--members").excludes(job.options.option(excluded));
   }
   job.options.option("--seed")
       .description("replaces the recipe's seed when given; with --vary the number of the variation")
@@ -239,7 +239,7 @@ Recipe varied(Job& job, const SynthOptions& options, const Recipe& recipe, std::
   const std::string whose = options.target.empty() ? "the recipe's own body" : options.target.string();
   job.summary["similarity"] = variation.similarity;
   job.summary["similarity_with"] = options.target.empty() ? "recipe" : "target";
-  job.summary["variation"] = figures_of(variation);
+  job.summary["variation"] = to_json(variation);
   job.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", seed, variation.similarity, whose,
                       describe(variation)));
   return std::move(variation.recipe);

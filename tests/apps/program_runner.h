@@ -30,7 +30,7 @@ inline pid_t start_program(const std::string& program, std::vector<std::string> 
 }
 
 // Waits for the program's end and returns its status as in Outcome.
-inline int status_of(pid_t child) {
+inline int exit_status(pid_t child) {
   int status = 0;
   if (child < 0 || ::waitpid(child, &status, 0) != child) return -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -40,8 +40,8 @@ inline Outcome run_program(const std::string& program, const std::vector<std::st
                            const std::filesystem::path& place = ".") {
   const ScratchFolder folder;
   const std::string output = folder / "output", errors = folder / "errors";
-  const int status = status_of(start_program(program, arguments, place, output, errors));
-  return {status, text_of(output), text_of(errors)};
+  const int status = exit_status(start_program(program, arguments, place, output, errors));
+  return {status, read_text(output), read_text(errors)};
 }
 
 inline void expect_program_refusal(const ScratchFolder& folder, const std::string& program,
@@ -57,7 +57,7 @@ class ProgramTest : public CommandTest {
       : CommandTest(std::filesystem::path(program).filename()), program_(program) {}
 
   Outcome run(const std::string& line) const override {
-    return run_program(program_, words_of(line), folder_.path());
+    return run_program(program_, split_words(line), folder_.path());
   }
 
  private:

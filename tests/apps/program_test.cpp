@@ -18,7 +18,7 @@
 namespace astrolith {
 namespace {
 
-int status_of(std::vector<std::string> arguments, const std::function<void(Program&)>& work) {
+int run_status(std::vector<std::string> arguments, const std::function<void(Program&)>& work) {
   Program program("tool", "A program for tests.");
   arguments.insert(arguments.begin(), "tool");
   std::vector<char*> argv;
@@ -33,7 +33,7 @@ struct Outcome {
 
 Outcome run(const std::vector<std::string>& arguments, const std::function<void(Program&)>& work) {
   ::testing::internal::CaptureStderr();
-  const int status = status_of(arguments, work);
+  const int status = run_status(arguments, work);
   return {status, ::testing::internal::GetCapturedStderr()};
 }
 
@@ -185,7 +185,7 @@ TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
     std::raise(SIGINT);
     if (progress(0.2, "")) std::exit(11);
   };
-  EXPECT_EXIT(status_of({"--summary", file}, work), ::testing::KilledBySignal(SIGINT), "");
+  EXPECT_EXIT(run_status({"--summary", file}, work), ::testing::KilledBySignal(SIGINT), "");
   EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file)).at("interrupted").get<bool>());
 }
 
@@ -195,7 +195,7 @@ TEST(ProgramDeathTest, ASignalIsCalledByItsName) {
       std::raise(signal_number);
       std::fprintf(stderr, "stopped by %s\n", p.stopped_by());
     };
-    EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(number), std::string("stopped by ") + name);
+    EXPECT_EXIT(run_status({}, work), ::testing::KilledBySignal(number), std::string("stopped by ") + name);
   }
 }
 
@@ -204,7 +204,7 @@ TEST(ProgramDeathTest, WorkThatAStopBreaksOffDiesOfTheSignal) {
     std::raise(SIGTERM);
     throw WorkError("stopped before anything was made");
   };
-  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGTERM), "stopped before anything was made");
+  EXPECT_EXIT(run_status({}, work), ::testing::KilledBySignal(SIGTERM), "stopped before anything was made");
 }
 
 TEST(ProgramDeathTest, WorkThatHeedsNoStopEndsAfterASecondUnlessItKeepsAResult) {
@@ -213,7 +213,7 @@ TEST(ProgramDeathTest, WorkThatHeedsNoStopEndsAfterASecondUnlessItKeepsAResult) 
     std::this_thread::sleep_for(std::chrono::seconds(20));
   };
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EXIT(status_of({}, deaf), ::testing::KilledBySignal(SIGTERM), "");
+  EXPECT_EXIT(run_status({}, deaf), ::testing::KilledBySignal(SIGTERM), "");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
   const auto keeping = [](Program& p) {
     p.keep_best_so_far();
@@ -221,14 +221,14 @@ TEST(ProgramDeathTest, WorkThatHeedsNoStopEndsAfterASecondUnlessItKeepsAResult) 
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     std::fputs("kept\n", stderr);
   };
-  EXPECT_EXIT(status_of({}, keeping), ::testing::KilledBySignal(SIGTERM), "kept");
+  EXPECT_EXIT(run_status({}, keeping), ::testing::KilledBySignal(SIGTERM), "kept");
 }
 
 // As in the background of a script.
 TEST(ProgramDeathTest, AnIgnoredCtrlCStaysIgnored) {
   const auto ignoring = [] {
     std::signal(SIGINT, SIG_IGN);
-    std::exit(status_of({}, [](Program& p) {
+    std::exit(run_status({}, [](Program& p) {
       std::raise(SIGINT);
       if (p.stopped()) std::exit(10);
     }));
@@ -241,7 +241,7 @@ TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {
     std::raise(SIGINT);
     std::raise(SIGINT);
   };
-  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
+  EXPECT_EXIT(run_status({}, work), ::testing::KilledBySignal(SIGINT), "");
 }
 
 TEST(ProgramDeathTest, ASecondCtrlCLeavesNoTemporaryFile) {
@@ -251,7 +251,7 @@ TEST(ProgramDeathTest, ASecondCtrlCLeavesNoTemporaryFile) {
     std::raise(SIGINT);
     std::raise(SIGINT);
   };
-  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
+  EXPECT_EXIT(run_status({}, work), ::testing::KilledBySignal(SIGINT), "");
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -265,7 +265,7 @@ TEST(ProgramDeathTest, AFullQuotaIsAnErrorOfWriting) {
     file.write(bytes.data(), bytes.size());
     file.commit();
   };
-  EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(1), "writing failed");
+  EXPECT_EXIT(std::exit(run_status({}, work)), ::testing::ExitedWithCode(1), "writing failed");
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -274,7 +274,7 @@ TEST(ProgramDeathTest, AClosedStderrIsNoReasonToCrash) {
     ::close(STDERR_FILENO);
     throw InputError("a.obj: bad; mend it");
   };
-  EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(2), "");
+  EXPECT_EXIT(std::exit(run_status({}, work)), ::testing::ExitedWithCode(2), "");
 }
 
 }  // namespace

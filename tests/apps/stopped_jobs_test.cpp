@@ -24,12 +24,12 @@ TEST(StoppedGravity, EndsWithinASecondAndLeavesNoFile) {
   const std::set<std::string> before = folder.files();
   for (const std::string longest : {"--points point.csv --degree 50", "--exact"}) {
     const std::string line = "fine.obj --density 2000 --sample 0 --quiet -o fine.csv " + longest;
-    const pid_t child = testing::start_program(ASTROLITH_GRAVITY, testing::words_of(line), folder.path());
+    const pid_t child = testing::start_program(ASTROLITH_GRAVITY, testing::split_words(line), folder.path());
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << longest << " ended before it could be stopped";
     const auto pressed = Clock::now();
     ::kill(child, SIGINT);
-    EXPECT_EQ(testing::status_of(child), 128 + SIGINT) << longest;
+    EXPECT_EQ(testing::exit_status(child), 128 + SIGINT) << longest;
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - pressed).count(), 1.0) << longest;
     EXPECT_EQ(folder.files(), before) << longest;
   }
@@ -45,8 +45,8 @@ testing::Outcome stopped_fit(const ScratchFolder& folder, const std::string& mes
       folder.path(), "/dev/null", errors);
   std::this_thread::sleep_for(after);
   ::kill(child, SIGINT);
-  const int status = testing::status_of(child);
-  return {status, "", testing::text_of(errors)};
+  const int status = testing::exit_status(child);
+  return {status, "", testing::read_text(errors)};
 }
 
 TEST(StoppedFit, SaysWhatItKeptAndDiesOfTheSignalLong) {

@@ -22,7 +22,7 @@ void print(const char* name, const FastNoise::SmartNode<>& noise) {
 
 // A noise whose cell is one unit wide.
 template <typename Noise>
-FastNoise::SmartNode<Noise> noise_of_unit_cells() {
+FastNoise::SmartNode<Noise> unit_cell_noise() {
   auto noise = FastNoise::New<Noise>();
   noise->SetScale(1.0f);
   return noise;
@@ -31,16 +31,16 @@ FastNoise::SmartNode<Noise> noise_of_unit_cells() {
 }  // namespace
 
 int main() {
-  const auto simplex = noise_of_unit_cells<FastNoise::Simplex>();
+  const auto simplex = unit_cell_noise<FastNoise::Simplex>();
   auto fbm = FastNoise::New<FastNoise::FractalFBm>();
   fbm->SetSource(simplex);
   fbm->SetOctaveCount(5);
   fbm->SetLacunarity(2.0f);
   fbm->SetGain(0.5f);
-  auto worley = noise_of_unit_cells<FastNoise::CellularDistance>();
+  auto worley = unit_cell_noise<FastNoise::CellularDistance>();
   worley->SetDistanceFunction(FastNoise::DistanceFunction::Euclidean);
   print("simplex", simplex);
-  print("perlin", noise_of_unit_cells<FastNoise::Perlin>());
+  print("perlin", unit_cell_noise<FastNoise::Perlin>());
   print("fbm", fbm);
   print("worley_f1", worley);
 }

@@ -25,7 +25,7 @@ namespace {
 constexpr int kSide = 256;
 constexpr float kStep = 0.02f;
 
-LoneNoise<FractalNoise> noise_of(Noise noise, int octaves) {
+LoneNoise<FractalNoise> make_test_noise(Noise noise, int octaves) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, octaves);
   layer.noise = noise;
   return {layer, 1, 0, {{-10, -10, -10}, {10, 10, 10}}};
@@ -54,12 +54,12 @@ double rate(const LoneNoise<FractalNoise>& noise, int nx, int ny, int nz, int bo
 }
 
 void print(const char* name, Noise noise, int octaves) {
-  const LoneNoise<FractalNoise> fractal = noise_of(noise, octaves);
+  const LoneNoise<FractalNoise> fractal = make_test_noise(noise, octaves);
   std::printf("{\"noise\": \"%s\", \"rows\": %.1f, \"blocks\": %.1f}\n", name,
               rate(fractal, kSide, 1, 1, kSide * kSide), rate(fractal, 9, 9, 9, kSide * kSide * kSide / 729));
 }
 
-GaborLayer layer_of(int bandwidth, double pixel_size) {
+GaborLayer make_layer(int bandwidth, double pixel_size) {
   GaborLayer layer;
   layer.height_rms = 1.0;
   layer.pixel_size = pixel_size;
@@ -69,7 +69,7 @@ GaborLayer layer_of(int bandwidth, double pixel_size) {
 
 double texture_rate(int bandwidth) {
   constexpr int n = 1024;
-  const GaborLayer layer = layer_of(bandwidth, 1.0);
+  const GaborLayer layer = make_layer(bandwidth, 1.0);
   return n * n / least_processor_seconds([&] { synthesize_texture(layer, n, n, {5}); });
 }
 
@@ -94,7 +94,7 @@ struct SurfaceBlocks {
 };
 
 double surface_rate(const SurfaceBlocks& blocks, int bandwidth) {
-  const testing::LoneGaborNoise noise(layer_of(bandwidth, blocks.pixel), 1, 0,
+  const testing::LoneGaborNoise noise(make_layer(bandwidth, blocks.pixel), 1, 0,
                                       *testing::sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   constexpr int n = SurfaceBlocks::kSide * SurfaceBlocks::kSide;
   std::vector<float> height(n);

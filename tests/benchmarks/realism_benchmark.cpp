@@ -195,9 +195,9 @@ RealismVerdict judge(const TriangleMesh& a, const TriangleMesh& b, Sampling samp
   options.points = sampling.points > 0 ? sampling.points : common_points(a, b);
   options.places = sampling.places;
   options.seed = 2 * seed + 1;
-  const SurfaceStatistics of_a = surface_statistics(a, options);
+  const SurfaceStatistics statistics_a = surface_statistics(a, options);
   options.seed = 2 * seed + 2;
-  return judge_realism(of_a, surface_statistics(b, options), {.seed = seed});
+  return judge_realism(statistics_a, surface_statistics(b, options), {.seed = seed});
 }
 
 // The verdicts of one case, over bodies and seeds.

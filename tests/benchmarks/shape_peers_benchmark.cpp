@@ -48,7 +48,7 @@ std::size_t recipe_bytes(const MetaballBody& body) {
   return recipe_to_json(recipe).size();
 }
 
-TriangleMesh mesh_of_equal_bytes(const TargetBody& target, const MetaballBody& body) {
+TriangleMesh equal_bytes_mesh(const TargetBody& target, const MetaballBody& body) {
   const auto bytes = static_cast<double>(recipe_bytes(body));
   return decimated(target.mesh, static_cast<std::size_t>(bytes / kBytesPerVertex));
 }
@@ -65,7 +65,7 @@ void print_row(const std::string& file, const ShapeFitOptions& options, int degr
   fmt::print("| {} | {} | {} | {} | {} / {} | {} / {} | {} | {:.0f} |\n",
              std::filesystem::path(file).stem().string(), percent(fit.check.distance),
              percent(harmonics_distance(target, degree)),
-             percent(distance(target, mesh_of_equal_bytes(target, fit.body))), topology.components,
+             percent(distance(target, equal_bytes_mesh(target, fit.body))), topology.components,
              target.components, topology.genus, analyze_topology(target.mesh).genus,
              fmt::format("{:.2f}", fit.body.blend_exponent * fit.body.a), seconds);
   std::fflush(stdout);

@@ -14,7 +14,7 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 constexpr int kIterations = 60;
 constexpr double kConverged = 1e-6;
 
-Eigen::Index count_of(int degree) { return Eigen::Index{degree + 1} * (degree + 1); }
+Eigen::Index coefficient_count(int degree) { return Eigen::Index{degree + 1} * (degree + 1); }
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void harmonics_at(const Vec3d& direction, int degree, std::vector<float>& values
 }
 
 SphericalHarmonics fit_harmonics(const std::vector<Vec3d>& points, const Vec3d& center, int degree) {
-  Matrix a(static_cast<Eigen::Index>(points.size()), count_of(degree));
+  Matrix a(static_cast<Eigen::Index>(points.size()), coefficient_count(degree));
   Eigen::VectorXf residual(a.rows());
   parallel_for(0, a.rows(), [&](std::int64_t i) {
     const Vec3d p = points[static_cast<std::size_t>(i)] - center;

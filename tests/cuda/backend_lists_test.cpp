@@ -30,9 +30,9 @@ TEST(BackendLists, AreTheSameForAnyNumberOfShares) {
 }
 
 TEST(BackendLists, HaveMoreThreadsWhereTheyAreFew) {
-  EXPECT_EQ(shares_of(1), kMostShares);
-  EXPECT_EQ(shares_of(kFullLaunch / 2), 2u);
-  EXPECT_EQ(shares_of(2 * kFullLaunch), 1u);
+  EXPECT_EQ(share_count(1), kMostShares);
+  EXPECT_EQ(share_count(kFullLaunch / 2), 2u);
+  EXPECT_EQ(share_count(2 * kFullLaunch), 1u);
 }
 
 }  // namespace

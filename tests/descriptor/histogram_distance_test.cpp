@@ -30,7 +30,7 @@ using Distance = double (*)(std::span<const double>, std::span<const double>);
 double root_chi_square(std::span<const double> f, std::span<const double> g) {
   return std::sqrt(chi_square_distance(f, g));
 }
-double of_marginals(std::span<const double> f, std::span<const double> g) {
+double marginal_distance(std::span<const double> f, std::span<const double> g) {
   return marginal_earth_movers_distance(f, g, 3);
 }
 
@@ -40,7 +40,7 @@ TEST(HistogramDistance, Metrics) {
     const Histogram f = random_histogram(random, 81), g = random_histogram(random, 81),
                     h = random_histogram(random, 81);
     for (const Distance d : {&l2_distance, &root_chi_square, &jensen_shannon_distance, &earth_movers_distance,
-                             &circular_earth_movers_distance, &of_marginals}) {
+                             &circular_earth_movers_distance, &marginal_distance}) {
       EXPECT_NEAR(d(f, f), 0, 1e-8);
       EXPECT_GT(d(f, g), 0);
       EXPECT_NEAR(d(f, g), d(g, f), 1e-15);

@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-DescriptionOptions options_of(PairFeatures features, std::int64_t points, std::uint64_t seed = 1) {
+DescriptionOptions make_options(PairFeatures features, std::int64_t points, std::uint64_t seed = 1) {
   DescriptionOptions options;
   options.features = features;
   options.points = points;
@@ -60,8 +60,8 @@ TEST(AhdHistogram, EqualsTheDefinition) {
 
 TEST(AhdHistogram, SumsToWahlsHistogram) {
   const TriangleMesh mesh = torus(1, 0.4);
-  const ShapeHistogram ahd = describe_shape(mesh, options_of(PairFeatures::ahd, 900)).histogram;
-  const ShapeHistogram wahl = describe_shape(mesh, options_of(PairFeatures::wahl, 900)).histogram;
+  const ShapeHistogram ahd = describe_shape(mesh, make_options(PairFeatures::ahd, 900)).histogram;
+  const ShapeHistogram wahl = describe_shape(mesh, make_options(PairFeatures::wahl, 900)).histogram;
   ASSERT_EQ(ahd.pairs, wahl.pairs);
   double moved = 0;
   for (std::size_t b = 0; b < 625; ++b) {
@@ -105,19 +105,19 @@ TEST(ShapeDescription, InvariantUpToResampling) {
   for (Triangle& t : other.triangles) t = {last - t[1], last - t[2], last - t[0]};
   for (Vec3d& p : other.vertices) p = 37.0 * rotated(0.5, {0.5, -0.5, 0.5}, p) + Vec3d{100, -2000, 3};
   for (const PairFeatures features : {PairFeatures::wahl, PairFeatures::ahd}) {
-    const auto a = describe_shape(mesh, options_of(features, 1500, 1)).histogram;
-    const auto again = describe_shape(mesh, options_of(features, 1500, 2)).histogram;
-    const auto moved = describe_shape(other, options_of(features, 1500, 1)).histogram;
+    const auto a = describe_shape(mesh, make_options(features, 1500, 1)).histogram;
+    const auto again = describe_shape(mesh, make_options(features, 1500, 2)).histogram;
+    const auto moved = describe_shape(other, make_options(features, 1500, 1)).histogram;
     EXPECT_GT(similarity(a, again), 0.94);
     EXPECT_GT(similarity(a, moved), 0.94);
-    const auto sphere = describe_shape(icosphere(4), options_of(features, 1500)).histogram;
+    const auto sphere = describe_shape(icosphere(4), make_options(features, 1500)).histogram;
     EXPECT_LT(similarity(a, sphere), 0.6);
   }
 }
 
 // A sphere has eta = 0 and kappa = 1/2, so that all pairs are in one of the 25 local bins.
 TEST(ShapeDescription, LocalFeaturesOfASphere) {
-  const ShapeHistogram h = describe_shape(icosphere(4, 3.0), options_of(PairFeatures::ahd, 800)).histogram;
+  const ShapeHistogram h = describe_shape(icosphere(4, 3.0), make_options(PairFeatures::ahd, 800)).histogram;
   std::vector<double> f = h.frequencies();
   EXPECT_NEAR(marginal(f, 5, 4)[0], 1, 1e-12);
   EXPECT_NEAR(marginal(f, 5, 5)[3], 1, 1e-12);
@@ -126,28 +126,28 @@ TEST(ShapeDescription, LocalFeaturesOfASphere) {
 TEST(ShapeDescription, PointsAloneAgreeWithTheMesh) {
   const TriangleMesh mesh = torus(1, 0.4, 120, 60);
   const SurfaceSamples s = sample_poisson_disk(mesh, 3000, 9);
-  const auto from_points = describe_shape(s.points, s.normals, options_of(PairFeatures::ahd, 3000));
-  const auto from_mesh = describe_shape(mesh, options_of(PairFeatures::ahd, 3000));
+  const auto from_points = describe_shape(s.points, s.normals, make_options(PairFeatures::ahd, 3000));
+  const auto from_mesh = describe_shape(mesh, make_options(PairFeatures::ahd, 3000));
   EXPECT_GT(similarity(from_points.histogram, from_mesh.histogram), 0.93);
   EXPECT_TRUE(from_points.remarks.empty());
 }
 
 TEST(ShapeDescription, SaysWhatIsMissing) {
-  const auto open = describe_shape(open_cap(3), options_of(PairFeatures::ahd, 200));
+  const auto open = describe_shape(open_cap(3), make_options(PairFeatures::ahd, 200));
   EXPECT_GT(open.vertices_left_out, 0);
   ASSERT_FALSE(open.remarks.empty());
   EXPECT_NE(open.remarks[0].find("no curvature"), std::string::npos);
-  EXPECT_TRUE(describe_shape(open_cap(3), options_of(PairFeatures::wahl, 200)).remarks.empty());
+  EXPECT_TRUE(describe_shape(open_cap(3), make_options(PairFeatures::wahl, 200)).remarks.empty());
 
   SurfaceSamples s = sample_poisson_disk(icosphere(2), 100, 1);
   s.points.insert(s.points.end(), s.points.begin(), s.points.begin() + 30);
   s.normals.insert(s.normals.end(), s.normals.begin(), s.normals.begin() + 30);
-  const auto repeated = describe_shape(s.points, s.normals, options_of(PairFeatures::ahd, 500));
+  const auto repeated = describe_shape(s.points, s.normals, make_options(PairFeatures::ahd, 500));
   EXPECT_EQ(repeated.points, 100);
   ASSERT_EQ(repeated.remarks.size(), 2u);
   EXPECT_EQ(repeated.remarks[0], "30 repeated points were left out");
   EXPECT_EQ(repeated.remarks[1], "only 100 points, 500 were asked for");
-  EXPECT_EQ(describe_shape(s.points, s.normals, options_of(PairFeatures::ahd, 50)).points, 50);
+  EXPECT_EQ(describe_shape(s.points, s.normals, make_options(PairFeatures::ahd, 50)).points, 50);
 }
 
 TEST(ShapeDescription, WrongInput) {
@@ -157,7 +157,7 @@ TEST(ShapeDescription, WrongInput) {
   EXPECT_THROW(describe_shape(same, none, {}), InputError);  // no normals
   EXPECT_THROW(describe_shape(same, one, {}), InputError);
   EXPECT_THROW(describe_shape(TriangleMesh{}, {}), InputError);
-  EXPECT_THROW(describe_shape(icosphere(1), options_of(PairFeatures::ahd, 1)), InputError);
+  EXPECT_THROW(describe_shape(icosphere(1), make_options(PairFeatures::ahd, 1)), InputError);
 }
 
 TEST(LocalFeatures, NormalPerturbation) {

@@ -108,21 +108,21 @@ TEST(SurfletPair, OrderOfTheTwoDoesNotMatter) {
 }
 
 // Splits a code into alpha, beta, gamma, delta and the origin.
-int code_of(int alpha, int beta, int gamma, int delta) {
+int join_code(int alpha, int beta, int gamma, int delta) {
   return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta;
 }
 int bin(const Oriented& i, const Oriented& j) { return surflet_code<5>(single(i), single(j)) % 625; }
 
 TEST(SurfletPair, DegeneratePairs) {
   const Oriented up{{0, 0, 0}, {0, 0, 1}}, down{{0, 0, 0}, {0, 0, -1}};
-  EXPECT_EQ(bin(up, up), code_of(2, 2, 2, 0));
-  EXPECT_EQ(bin(up, down), code_of(4, 2, 2, 0));
+  EXPECT_EQ(bin(up, up), join_code(2, 2, 2, 0));
+  EXPECT_EQ(bin(up, down), join_code(4, 2, 2, 0));
   // Both normals lie along the line: one behind the other, face to face, back to back.
-  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, 1}}), code_of(2, 2, 4, 4));
-  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, -1}}), code_of(4, 2, 4, 4));
-  EXPECT_EQ(bin(down, {{0, 0, 1}, {0, 0, 1}}), code_of(4, 2, 0, 4));
+  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, 1}}), join_code(2, 2, 4, 4));
+  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, -1}}), join_code(4, 2, 4, 4));
+  EXPECT_EQ(bin(down, {{0, 0, 1}, {0, 0, 1}}), join_code(4, 2, 0, 4));
   // Both points lie in one plane.
-  EXPECT_EQ(bin(up, {{0.5, 0, 0}, {0, 0, 1}}), code_of(2, 2, 2, 2));
+  EXPECT_EQ(bin(up, {{0.5, 0, 0}, {0, 0, 1}}), join_code(2, 2, 2, 2));
 }
 
 // A pair whose frame is known: r along x, u along z, so v = d x u = -y and w = u x v = x.
@@ -131,7 +131,7 @@ TEST(SurfletPair, AngleBinsFollowTheArcTangent) {
     if ((k + 1800) % 720 == 0) continue;  // a border
     const double alpha = std::numbers::pi * k / 1800;
     const Oriented i{{0, 0, 0}, {0, 0, 1}}, j{{0.9, 0, 0}, {std::sin(alpha), 0, std::cos(alpha)}};
-    ASSERT_EQ(bin(i, j), code_of((k + 1800) / 720, 2, 2, 4)) << k;
+    ASSERT_EQ(bin(i, j), join_code((k + 1800) / 720, 2, 2, 4)) << k;
   }
 }
 
@@ -149,7 +149,7 @@ TEST(SurfletPair, BordersAreWhereTheyBelong) {
   EXPECT_TRUE(fine.obtuse[3]);
 }
 
-ShapeHistogram histogram_of(const SurfaceSamples& s) { return surflet_histogram(s.points, s.normals); }
+ShapeHistogram make_histogram(const SurfaceSamples& s) { return surflet_histogram(s.points, s.normals); }
 
 std::uint64_t total(const ShapeHistogram& h) {
   return std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0});
@@ -165,7 +165,7 @@ double moved(const ShapeHistogram& a, const ShapeHistogram& b) {
 }
 
 // Surflets as surflet_histogram makes them of points and normals.
-std::vector<Surflet> surflets_of(const SurfaceSamples& s, double max_distance) {
+std::vector<Surflet> make_surflets(const SurfaceSamples& s, double max_distance) {
   Box box;
   for (const Vec3d& p : s.points) box.extend(p);
   const auto single = [](const Vec3d& v) {
@@ -187,7 +187,7 @@ void expect_one_pair_at_a_time(int n) {
   ASSERT_EQ(h.counts.size(), static_cast<std::size_t>(bin_count(PairFeatures::wahl, kBins)));
   ASSERT_EQ(h.pairs, static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(std::max(n - 1, 0)) / 2);
   ASSERT_EQ(total(h), h.pairs);
-  const std::vector<Surflet> surflets = surflets_of(s, h.max_distance);
+  const std::vector<Surflet> surflets = make_surflets(s, h.max_distance);
   ShapeHistogram expected = h;
   expected.counts.assign(h.counts.size(), 0);
   for (std::size_t i = 0; i < surflets.size(); ++i) {
@@ -217,17 +217,17 @@ TEST(SurfletHistogram, EqualsOnePairAtATime) {
 // Histograms agree up to rounding, which moves the few pairs that lie on the border of a bin.
 TEST(SurfletHistogram, MovingTurningAndScalingChangeNothing) {
   const SurfaceSamples s = random_surflets(800, 1);
-  const ShapeHistogram before = histogram_of(s);
+  const ShapeHistogram before = make_histogram(s);
   SurfaceSamples t = s;
   for (Vec3d& p : t.points) p = 1234.5 * rotated(0.5, {0.5, -0.5, 0.5}, p) + Vec3d{1e5, -2e5, 3e4};
   for (Vec3d& n : t.normals) n = 3.0 * rotated(0.5, {0.5, -0.5, 0.5}, n);
-  EXPECT_LT(moved(before, histogram_of(t)), 3e-5 * static_cast<double>(before.pairs));
+  EXPECT_LT(moved(before, make_histogram(t)), 3e-5 * static_cast<double>(before.pairs));
   const double c = std::cos(0.3), q = std::sin(0.3) / std::sqrt(3.0);
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     t.points[i] = rotated(c, {q, q, q}, s.points[i]);
     t.normals[i] = rotated(c, {q, q, q}, s.normals[i]);
   }
-  EXPECT_LT(moved(before, histogram_of(t)), 3e-5 * static_cast<double>(before.pairs));
+  EXPECT_LT(moved(before, make_histogram(t)), 3e-5 * static_cast<double>(before.pairs));
 }
 
 TEST(SurfletHistogram, OrderAndThreadsChangeNothing) {
@@ -235,7 +235,7 @@ TEST(SurfletHistogram, OrderAndThreadsChangeNothing) {
   ShapeHistogram one;
   {
     const ThreadLimit limit(1);
-    one = histogram_of(s);
+    one = make_histogram(s);
   }
   SurfaceSamples shuffled = s;
   CounterRandom random(6);
@@ -245,8 +245,8 @@ TEST(SurfletHistogram, OrderAndThreadsChangeNothing) {
     std::swap(shuffled.normals[i], shuffled.normals[k]);
   }
   const ThreadLimit limit(4);
-  EXPECT_EQ(histogram_of(s).counts, one.counts);
-  EXPECT_EQ(histogram_of(shuffled).counts, one.counts);
+  EXPECT_EQ(make_histogram(s).counts, one.counts);
+  EXPECT_EQ(make_histogram(shuffled).counts, one.counts);
 }
 
 // On a sphere a pair at angle theta has alpha = theta, beta = 0, gamma = -sin(theta/2), delta = sin(theta/2),
@@ -261,7 +261,7 @@ TEST(SurfletHistogram, SphereAgainstQuadrature) {
     s.points.push_back(-s.points.back());
   }
   s.normals = s.points;
-  const auto f = histogram_of(s).frequencies();
+  const auto f = make_histogram(s).frequencies();
   std::vector<double> expected(625, 0.0);
   const int steps = 200000;
   for (int k = 0; k < steps; ++k) {
@@ -276,7 +276,7 @@ TEST(SurfletHistogram, SphereAgainstQuadrature) {
 
 TEST(SurfletHistogram, TellsShapesApartAndSamplingsNot) {
   const auto sampled = [](const TriangleMesh& mesh, std::uint64_t seed) {
-    return histogram_of(sample_poisson_disk(mesh, 2000, seed));
+    return make_histogram(sample_poisson_disk(mesh, 2000, seed));
   };
   const auto torus_a = sampled(torus(1, 0.4), 1), torus_b = sampled(torus(1, 0.4), 2);
   EXPECT_GT(similarity(torus_a, torus_b), 0.96);

@@ -6,7 +6,7 @@
 namespace {
 
 // CRC-16 with the polynomial 0x1021, as docs/recipe.md states for compact recipes.
-unsigned check_of(const std::uint8_t* data, std::size_t size) {
+unsigned checksum(const std::uint8_t* data, std::size_t size) {
   unsigned check = 0xffff;
   for (std::size_t i = 0; i < size; ++i) {
     check ^= static_cast<unsigned>(data[i]) << 8;
@@ -20,7 +20,7 @@ unsigned check_of(const std::uint8_t* data, std::size_t size) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace astrolith;
-  const unsigned check = check_of(data, size);
+  const unsigned check = checksum(data, size);
   std::string file = "AST\1";
   file += static_cast<char>(check >> 8);
   file += static_cast<char>(check & 0xff);

@@ -20,7 +20,7 @@ namespace {
 
 using Outline = std::vector<Vec3d>;
 
-std::vector<Triangle> fan_of(std::size_t corners, std::uint32_t first = 0) {
+std::vector<Triangle> make_fan(std::size_t corners, std::uint32_t first = 0) {
   std::vector<Triangle> fan;
   const auto n = static_cast<std::uint32_t>(corners);
   for (std::uint32_t i = 2; i < n; ++i) fan.push_back({first, (first + i - 1) % n, (first + i) % n});
@@ -37,7 +37,7 @@ double covered(const std::vector<Triangle>& triangles, const Outline& outline) {
 // Cuts the polygon from every corner on, and expects that the triangles cover the area.
 void expect_covered(const Outline& outline, double area) {
   for (std::uint32_t first = 0; first < outline.size(); ++first) {
-    std::vector<Triangle> triangles = fan_of(outline.size(), first);
+    std::vector<Triangle> triangles = make_fan(outline.size(), first);
     if (!fan_covers_polygon(triangles, outline)) cut_ears(triangles, outline);
     EXPECT_NEAR(covered(triangles, outline), area, 1e-9 * area) << first;
   }
@@ -58,9 +58,9 @@ TEST(EarCutter, ConvexPolygonsKeepTheirFan) {
     const double angle = 2 * std::numbers::pi * i / 50;
     circle.push_back({std::cos(angle), std::sin(angle), 0.1 * std::cos(angle)});
   }
-  EXPECT_TRUE(fan_covers_polygon(fan_of(50), circle));
+  EXPECT_TRUE(fan_covers_polygon(make_fan(50), circle));
   const Outline corners_on_sides{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {0, 2, 0}};
-  EXPECT_TRUE(fan_covers_polygon(fan_of(6, 1), corners_on_sides));
+  EXPECT_TRUE(fan_covers_polygon(make_fan(6, 1), corners_on_sides));
   expect_covered(corners_on_sides, 4);
 }
 
@@ -92,7 +92,7 @@ TEST(EarCutter, ManySpirals) {
     Vec3d doubled;
     for (std::size_t i = 0; i < spiral.size(); ++i)
       doubled += cross(spiral[i], spiral[(i + 1) % spiral.size()]);
-    std::vector<Triangle> triangles = fan_of(spiral.size());
+    std::vector<Triangle> triangles = make_fan(spiral.size());
     cut_ears(triangles, spiral);
     EXPECT_NEAR(covered(triangles, spiral), norm(doubled) / 2, 1e-9 * norm(doubled));
   }
@@ -104,13 +104,13 @@ TEST(EarCutter, PolygonsThatCrossThemselvesGiveClosedBodies) {
   for (std::uint32_t i = 0; i < 300; ++i)
     star.push_back({unit_float(hash_cell(1u, static_cast<int>(i), 0, 0)),
                     unit_float(hash_cell(1u, static_cast<int>(i), 1, 0)), 0});
-  std::vector<Triangle> triangles = fan_of(star.size());
+  std::vector<Triangle> triangles = make_fan(star.size());
   cut_ears(triangles, star);
   Vec3d sum, doubled;
   for (const auto& [a, b, c] : triangles) sum += cross(star[b] - star[a], star[c] - star[a]);
   for (std::size_t i = 0; i < star.size(); ++i) doubled += cross(star[i], star[(i + 1) % star.size()]);
   EXPECT_NEAR(sum.z, doubled.z, 1e-9);
-  std::vector<Triangle> flat = fan_of(5);
+  std::vector<Triangle> flat = make_fan(5);
   cut_ears(flat, Outline(5));
   EXPECT_EQ(flat.size(), 3u);
 }
@@ -171,14 +171,14 @@ TEST_F(ConcaveCaps, CornersWithoutNumber) {
     return folder_.write("zigzag.obj", text + face + "\n");
   };
   EXPECT_EQ(read_mesh(zigzag(9998)).triangles.size(), 9998u);
-  const std::string message = testing::refusal_of([&] { read_mesh(zigzag(50000)); });
+  const std::string message = testing::refusal_text([&] { read_mesh(zigzag(50000)); });
   EXPECT_NE(message.find("a face of 50002 corners is not convex, which takes too long to cut; cut such"),
             message.npos)
       << message;
   std::ifstream in(zigzag(9998));
   std::string text(std::istreambuf_iterator<char>(in), {}), face = text.substr(text.find("f "));
   for (int i = 0; i < 10; ++i) text += face;
-  const std::string many = testing::refusal_of([&] { read_mesh(folder_.write("many.obj", text)); });
+  const std::string many = testing::refusal_text([&] { read_mesh(folder_.write("many.obj", text)); });
   EXPECT_NE(many.find("takes too long with those before it; cut such"), many.npos) << many;
 }
 

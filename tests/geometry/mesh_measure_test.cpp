@@ -183,12 +183,12 @@ TEST(TriangleQuality, FiguresOfAMesh) {
   const std::vector<MeshVertex> vertices{{{0, 0, 0}, {}}, {{1, 0, 0}, {}}, {{0, 1, 0}, {}}, {{2, 0, 0}, {}}};
   std::vector<Triangle> triangles(198, Triangle{0, 1, 2});
   triangles.insert(triangles.begin() + 60, 2, Triangle{0, 1, 3});
-  const QualityFigures figures = quality_of(vertices, triangles);
+  const QualityFigures figures = mesh_quality(vertices, triangles);
   EXPECT_NEAR(figures.first_percentile, 0.8660254, 1e-6);
   EXPECT_NEAR(figures.mean, 0.99 * 0.8660254, 1e-6);
   triangles.push_back({0, 1, 3});
-  EXPECT_EQ(quality_of(vertices, triangles).first_percentile, 0.0);
-  EXPECT_EQ(quality_of({}, {}).mean, 0.0);
+  EXPECT_EQ(mesh_quality(vertices, triangles).first_percentile, 0.0);
+  EXPECT_EQ(mesh_quality({}, {}).mean, 0.0);
 }
 
 }  // namespace

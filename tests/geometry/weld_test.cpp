@@ -89,7 +89,7 @@ std::uint64_t unmixed(std::uint64_t z) {
 
 // Places that a table of hashes puts into one slot if the hash is splitmix64 over the coordinates, as it once
 // was here: all end in 40 zeros.
-TriangleMesh places_of_one_slot(std::uint32_t count) {
+TriangleMesh one_slot_places(std::uint32_t count) {
   TriangleMesh mesh;
   for (std::uint64_t k = 1; mesh.vertices.size() < count; ++k) {
     const double x = static_cast<double>(mesh.vertices.size()), y = 1.0;
@@ -103,7 +103,7 @@ TriangleMesh places_of_one_slot(std::uint32_t count) {
 
 // By hash, this took a minute.
 TEST(Weld, NoChoiceOfPlacesIsSlow) {
-  TriangleMesh mesh = places_of_one_slot(400000);
+  TriangleMesh mesh = one_slot_places(400000);
   const std::vector<Vec3d> once = mesh.vertices;
   mesh.vertices.insert(mesh.vertices.end(), once.rbegin(), once.rend());
   EXPECT_TRUE(weld_vertices(std::move(mesh), 0).vertices == once);

@@ -236,7 +236,7 @@ TriangleMesh octasphere(int n) {
 
 // The limit of a quantity of n for ever finer meshes: the polynomial in 1 / n^2 through all values, at 0
 // (Neville).
-Truth limit_of(const std::function<Truth(int)>& quantity) {
+Truth find_limit(const std::function<Truth(int)>& quantity) {
   const std::vector<int> sizes{8, 12, 16, 24, 32, 48, 64};
   std::vector<Truth> values;
   std::vector<Long> x;
@@ -257,8 +257,8 @@ Truth limit_of(const std::function<Truth(int)>& quantity) {
 // Exact sums need no multipoles.
 constexpr GravityDetail kNoTree{0, 1u << 20};
 
-Truth limit_of_ellipsoids(const Vec3d& half, const Vec3d& p) {
-  return limit_of([&](int n) {
+Truth ellipsoid_limit(const Vec3d& half, const Vec3d& p) {
+  return find_limit([&](int n) {
     TriangleMesh mesh = octasphere(n);
     for (Vec3d& v : mesh.vertices) v = {half.x * v.x, half.y * v.y, half.z * v.z};
     const Attraction at = PolyhedronGravity(mesh, kNoTree).exactly_at(std::vector<Vec3d>{p}).values[0];
@@ -276,13 +276,13 @@ TEST(AnalyticTruth, BallAsTheLimitOfPolyhedra) {
     const LongVector direction{0.48L, 0.6L, 0.64L}, p = r * direction;
     const Truth truth{r < 1 ? 2 * kPi / 3 * (3 - r * r) : 4 * kPi / 3 / r,
                       direction * (r < 1 ? -4 * kPi / 3 * r : -4 * kPi / 3 / (r * r))};
-    expect_equal(limit_of_ellipsoids({1, 1, 1}, {double(p.x), double(p.y), double(p.z)}), truth, 1e-10);
+    expect_equal(ellipsoid_limit({1, 1, 1}, {double(p.x), double(p.y), double(p.z)}), truth, 1e-10);
   }
 }
 
 // Potential and pull of a homogeneous ellipsoid inside and outside (MacMillan 1930): integrals over u from
 // lambda, the ellipsoid through the point, to infinity. u = lambda + (t / (1 - t))^2 makes them smooth.
-Truth truth_of_ellipsoid(const Vec3d& half, const Vec3d& p) {
+Truth ellipsoid_truth(const Vec3d& half, const Vec3d& p) {
   const LongVector square{Long(half.x) * half.x, Long(half.y) * half.y, Long(half.z) * half.z};
   const LongVector point{Long(p.x) * p.x, Long(p.y) * p.y, Long(p.z) * p.z};
   const auto beyond = [&](Long u) {
@@ -313,7 +313,7 @@ TEST(AnalyticTruth, EllipsoidAsTheLimitOfPolyhedra) {
   const Vec3d half{1.5, 1.25, 1.0};
   for (const Vec3d& p :
        {Vec3d{0.2, -0.3, 0.25}, Vec3d{0.5, 0.25, -0.125}, Vec3d{2, 1, 1.5}, Vec3d{-4, 3, 5}}) {
-    expect_equal(limit_of_ellipsoids(half, p), truth_of_ellipsoid(half, p), 1e-10);
+    expect_equal(ellipsoid_limit(half, p), ellipsoid_truth(half, p), 1e-10);
   }
 }
 

@@ -59,14 +59,14 @@ TEST(GravityCoefficients, DegreeTwoFollowsFromInertia) {
 TEST(GravityCoefficients, AreTheSameForAnyThreadCount) {
   TriangleMesh mesh = testing::icosphere(4);
   for (Vec3d& p : mesh.vertices) p = {1.3 * p.x + 0.2 * p.y * p.z, p.y, 0.8 * p.z + 0.1 * p.x};
-  std::vector<std::vector<GravityCoefficient>> of_threads;
+  std::vector<std::vector<GravityCoefficient>> by_threads;
   for (const int threads : {1, 16}) {
     const ThreadLimit limit(threads);
-    of_threads.push_back(gravity_coefficients(mesh, {}, 1.7, 4));
+    by_threads.push_back(gravity_coefficients(mesh, {}, 1.7, 4));
   }
-  for (std::size_t i = 0; i < of_threads[0].size(); ++i) {
-    EXPECT_EQ(of_threads[0][i].c, of_threads[1][i].c) << i;
-    EXPECT_EQ(of_threads[0][i].s, of_threads[1][i].s) << i;
+  for (std::size_t i = 0; i < by_threads[0].size(); ++i) {
+    EXPECT_EQ(by_threads[0][i].c, by_threads[1][i].c) << i;
+    EXPECT_EQ(by_threads[0][i].s, by_threads[1][i].s) << i;
   }
 }
 

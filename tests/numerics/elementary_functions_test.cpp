@@ -161,8 +161,8 @@ TEST(BranchFree, AnglesInAllQuadrantsAndOnTheAxes) {
 constexpr int kLanes = 64;
 using Lanes = std::array<double, kLanes>;
 
-ASTROLITH_SIMD_CLONES void loop_of_both(const double* __restrict x, const double* __restrict y,
-                                        double* __restrict angles, double* __restrict logarithms) {
+ASTROLITH_SIMD_CLONES void loop_over_both(const double* __restrict x, const double* __restrict y,
+                                          double* __restrict angles, double* __restrict logarithms) {
 #pragma omp simd
   for (int i = 0; i < kLanes; ++i) {
     angles[i] = branch_free::atan2(y[i], x[i]);
@@ -177,7 +177,7 @@ TEST(BranchFree, SameBitsInALoop) {
     x[static_cast<std::size_t>(i)] = 2.0 * random_unit(i, 5);
     y[static_cast<std::size_t>(i)] = 2.0 * random_unit(i, 6) - 1.0;
   }
-  loop_of_both(x.data(), y.data(), angles.data(), logarithms.data());
+  loop_over_both(x.data(), y.data(), angles.data(), logarithms.data());
   for (std::size_t i = 0; i < kLanes; ++i) {
     EXPECT_EQ(angles[i], branch_free::atan2(y[i], x[i]));
     EXPECT_EQ(logarithms[i], branch_free::log_ratio(2.0 + x[i], 2.0 - x[i], x[i], 2.0));
@@ -252,7 +252,7 @@ TEST(PortableDouble, EndsAsItSays) {
 }
 
 // The error in units of 1e-16 against the truth, which has 64 bits.
-double error_of(double value, long double truth) {
+double relative_error(double value, long double truth) {
   return static_cast<double>(std::fabs(static_cast<long double>(value) - truth) * 1e16L);
 }
 
@@ -263,12 +263,12 @@ TEST(PortableAngles, SineAndCosineHaveTheStatedAccuracy) {
     const double reach = i % 4 == 0 ? 1e5 : i % 4 == 1 ? 100.0 : i % 4 == 2 ? 7.0 : 1.0;
     const double angle = random.uniform(-reach, reach);
     const long double exact = static_cast<long double>(angle);
-    worst = std::max(
-        {worst, error_of(portable::sin(angle), sinl(exact)), error_of(portable::cos(angle), cosl(exact))});
+    worst = std::max({worst, relative_error(portable::sin(angle), sinl(exact)),
+                      relative_error(portable::cos(angle), cosl(exact))});
     const double steep = random.uniform(-1.56, 1.56);
     const long double truth = tanl(static_cast<long double>(steep));
     worst_tangent =
-        std::max(worst_tangent, error_of(static_cast<double>(portable::tan(steep) / truth), 1.0L));
+        std::max(worst_tangent, relative_error(static_cast<double>(portable::tan(steep) / truth), 1.0L));
   }
   EXPECT_LT(worst, 4.0);
   EXPECT_LT(worst_tangent, 10.0);
@@ -281,7 +281,7 @@ TEST(PortableAngles, ArcTangentHasTheStatedAccuracy) {
   double worst = 0.0;
   for (int i = 0; i < 400'000; ++i) {
     const double y = random.uniform(-1.0, 1.0), x = random.uniform(-1.0, 1.0) * (i % 3 == 0 ? 1e-9 : 1.0);
-    worst = std::max(worst, error_of(portable::atan2(y, x), atan2l(y, x)));
+    worst = std::max(worst, relative_error(portable::atan2(y, x), atan2l(y, x)));
   }
   EXPECT_LT(worst, 10.0);
   RecordProperty("worst_1e_16", std::to_string(worst));

@@ -28,7 +28,7 @@ Sphere sphere_on_grid(CounterRandom& random, double step) {
   return {{x, y, z}, on_grid(10, 200)};
 }
 
-Recipe body_of(std::vector<Sphere> spheres) {
+Recipe make_body(std::vector<Sphere> spheres) {
   Recipe recipe;
   recipe.body.emplace().spheres = std::move(spheres);
   return recipe;
@@ -44,11 +44,11 @@ Recipe body_on_grid(double step) {
     table.values.insert(table.values.end(), {s.center.x, s.center.y, s.center.z, s.radius});
   std::vector<Sphere> ordered;
   for (const std::size_t i : spatial_order(table)) ordered.push_back(spheres[i]);
-  return body_of(ordered);
+  return make_body(ordered);
 }
 
-std::string error_of_bytes(const std::string& bytes) {
-  return testing::refusal_of([&] { parse_recipe(bytes, "r.astro"); });
+std::string error_for_bytes(const std::string& bytes) {
+  return testing::refusal_text([&] { parse_recipe(bytes, "r.astro"); });
 }
 
 TEST(CompactRecipe, HoldsEveryField) {
@@ -59,14 +59,14 @@ TEST(CompactRecipe, HoldsNumbersToTheLastBit) {
   CounterRandom random(3);
   std::vector<Sphere> spheres = {{{0.1 + 0.2, -0.0, 1e-300}, 1e-12}, {{1e12, -1e12, 1.0 / 3.0}, 1e12}};
   for (int i = 0; i < 50; ++i) spheres.push_back({{random.normal(), random.normal(), random.normal()}, 1.0});
-  const Recipe recipe = body_of(spheres), read = reread(recipe);
+  const Recipe recipe = make_body(spheres), read = reread(recipe);
   expect_equal_after_compact(recipe);
   EXPECT_TRUE(std::signbit(read.body->spheres[0].center.y));
 }
 
 TEST(CompactRecipe, HoldsOneSphereAndManyEqualOnes) {
-  expect_equal_after_compact(body_of({{{1, 2, 3}, 4}}));
-  expect_equal_after_compact(body_of(std::vector<Sphere>(300, {{1, 2, 3}, 4})));
+  expect_equal_after_compact(make_body({{{1, 2, 3}, 4}}));
+  expect_equal_after_compact(make_body(std::vector<Sphere>(300, {{1, 2, 3}, 4})));
 }
 
 TEST(CompactRecipe, KeepsTheOrderOfMetaballs) {
@@ -84,7 +84,7 @@ TEST(CompactRecipe, SpendsNoBytesOnTheOrderOfMetaballs) {
 }
 
 TEST(CompactRecipe, KnowsTheTextOfABareBody) {
-  EXPECT_LT(recipe_to_compact(body_of({{{1, 2, 3}, 4}})).size(), 60u);
+  EXPECT_LT(recipe_to_compact(make_body({{{1, 2, 3}, 4}})).size(), 60u);
 }
 
 // The model of the text and the coder may not change while the version is 1.
@@ -94,7 +94,7 @@ TEST(CompactRecipe, KeepsTheBytesOfItsVersion) {
                                  0x76, 0xb2, 0xd6, 0xd7, 0x69, 0xa2, 0x0e, 0x7a, 0x1b, 0x46, 0xeb,
                                  0x62, 0x1d, 0xd0, 0xb1, 0x89, 0xf0, 0xf1, 0x6a, 0x81, 0xdd, 0x61,
                                  0xaa, 0x66, 0x86, 0xc2, 0xf0, 0xac, 0x00, 0x18, 0x75, 0x40};
-  EXPECT_EQ(recipe_to_compact(body_of({{{1, 2, 3}, 4}})), std::string(std::begin(bytes), std::end(bytes)));
+  EXPECT_EQ(recipe_to_compact(make_body({{{1, 2, 3}, 4}})), std::string(std::begin(bytes), std::end(bytes)));
 }
 
 TEST(CompactRecipe, IsAFileLikeOthers) {
@@ -108,7 +108,7 @@ TEST(CompactRecipe, IsAFileLikeOthers) {
 TEST(CompactRecipe, OtherVersionIsRefused) {
   std::string bytes = recipe_to_compact(body_on_grid(1.0));
   bytes[3] = 2;
-  EXPECT_EQ(error_of_bytes(bytes),
+  EXPECT_EQ(error_for_bytes(bytes),
             "r.astro: is a compact recipe of version 2, this program reads 1; use the program version that "
             "wrote the file");
 }
@@ -117,11 +117,11 @@ TEST(CompactRecipe, DamagedBytesAreRefused) {
   const std::string bytes = recipe_to_compact(body_on_grid(1.0));
   const std::string damaged = "r.astro: is a damaged compact recipe; copy it or write it again";
   for (std::size_t size = 3; size < bytes.size(); ++size)
-    EXPECT_EQ(error_of_bytes(bytes.substr(0, size)), damaged) << size;
+    EXPECT_EQ(error_for_bytes(bytes.substr(0, size)), damaged) << size;
   for (std::size_t i = 4; i < bytes.size(); ++i) {
     std::string changed = bytes;
     changed[i] = static_cast<char>(changed[i] ^ 0x10);
-    EXPECT_EQ(error_of_bytes(changed), damaged) << i;
+    EXPECT_EQ(error_for_bytes(changed), damaged) << i;
   }
 }
 
@@ -149,7 +149,7 @@ TEST(CompactRecipe, HostileStreamsEndInOneLineOrInARecipe) {
           6 + static_cast<std::size_t>(random.uniform() * static_cast<double>(changed.size() - 6));
       changed[at] = static_cast<char>(static_cast<unsigned char>(random.uniform() * 256.0));
     }
-    const std::string error = error_of_bytes(with_valid_check(changed));
+    const std::string error = error_for_bytes(with_valid_check(changed));
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
 }
@@ -158,7 +158,7 @@ TEST(CompactRecipe, SizesBeyondTheLimitsAreRefusedBeforeTheyAreAllocated) {
   RangeEncoder encoder;
   encoder.encode_number(std::uint64_t{1} << 40);
   const std::string error =
-      error_of_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + encoder.finish()));
+      error_for_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + encoder.finish()));
   EXPECT_NE(error.find("damaged"), std::string::npos) << error;
   RangeEncoder rows;
   rows.encode_number(std::uint64_t{1} << 31);
@@ -171,7 +171,8 @@ TEST(CompactRecipe, SizesBeyondTheLimitsAreRefusedBeforeTheyAreAllocated) {
 TEST(CompactRecipe, AFewBytesHoldAFewThings) {
   RangeEncoder text;
   text.encode_number(std::uint64_t{1} << 23);  // bytes of text, of which none follows
-  const std::string error = error_of_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + text.finish()));
+  const std::string error =
+      error_for_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + text.finish()));
   EXPECT_NE(error.find("damaged"), std::string::npos) << error;
 }
 
@@ -187,8 +188,8 @@ TEST(CompactRecipe, EqualRowsThatWouldCostNothingAreRefused) {
 TEST(CompactRecipe, HoldsPointsThatStandManyTimes) {
   std::vector<Sphere> spheres(100, Sphere{{1, 2, 3}, 4});
   spheres.push_back({{5, 6, 7}, 8});
-  expect_equal_after_compact(body_of(spheres));
-  expect_equal_after_compact(body_of(std::vector<Sphere>(1000, Sphere{{1, 2, 3}, 4})));
+  expect_equal_after_compact(make_body(spheres));
+  expect_equal_after_compact(make_body(std::vector<Sphere>(1000, Sphere{{1, 2, 3}, 4})));
 }
 
 TEST(NumberLattice, IsTheCoarsestThatHoldsAll) {

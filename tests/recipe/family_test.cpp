@@ -18,8 +18,8 @@ const std::string kBall = R"({"format_version": 1, "length_unit": "m", "seed": 3
 
 Recipe recipe_with(const std::string& family) { return parse_recipe(kBall + family + "}", "f.json"); }
 
-std::string refusal_of(const std::string& family) {
-  return testing::refusal_of([&] { recipe_with(family); });
+std::string refusal_text(const std::string& family) {
+  return testing::refusal_text([&] { recipe_with(family); });
 }
 
 TEST(Family, IsReadAndWrittenAlike) {
@@ -76,11 +76,11 @@ TEST(Family, RefusesWhatNoMemberCouldBe) {
             " with the least numbers, layers[0].frequency: must be above 0"},
        }) {
     const std::string text = std::string(R"({"fields": [{"field": ")") + field + "\", " + rest + "}]}";
-    const std::string refusal = refusal_of(text);
+    const std::string refusal = refusal_text(text);
     EXPECT_TRUE(testing::has(refusal, std::string("f.json: family") + (*words == ' ' ? ":" : ".") + words));
   }
   EXPECT_TRUE(testing::has(
-      refusal_of(R"({"fields": [{"field": "seed", "low": 1, "high": 2, "distribution": "integer"},
+      refusal_text(R"({"fields": [{"field": "seed", "low": 1, "high": 2, "distribution": "integer"},
                                 {"field": "seed", "low": 1, "high": 2, "distribution": "integer"}]})"),
       "f.json: family.fields[1].field: is drawn twice: \"seed\""));
 }
@@ -89,12 +89,12 @@ TEST(Family, RefusesWhatNoMemberCouldBe) {
 static_assert(!std::is_default_constructible_v<LayerTraits>);
 
 template <class... Kinds>
-std::vector<Layer> one_of_each_kind(const std::variant<Kinds...>*) {
+std::vector<Layer> make_all_kinds(const std::variant<Kinds...>*) {
   return {Layer(Kinds{})...};
 }
 
 TEST(LayerTraits, TellWhatALayerHas) {
-  for (const Layer& layer : one_of_each_kind(static_cast<const Layer*>(nullptr))) {
+  for (const Layer& layer : make_all_kinds(static_cast<const Layer*>(nullptr))) {
     const LayerTraits traits = layer_traits(layer);
     EXPECT_EQ(find_use(layer) != nullptr, traits.is_noise) << type_word(layer);
     const std::string_view word = type_word(layer);
@@ -156,7 +156,7 @@ Recipe with_relief(int levels = 91) {
   return recipe;
 }
 
-const ExemplarImage& pixels_of(const Recipe& recipe) {
+const ExemplarImage& find_pixels(const Recipe& recipe) {
   return *std::get<ReliefLayer>(recipe.layers[0]).pixels;
 }
 
@@ -167,8 +167,8 @@ TEST(ReliefText, ComesBackFromJsonAndFromACompactRecipe) {
     EXPECT_LT(compact.size(), json.size());
     for (const std::string& text : {json, compact}) {
       const Recipe read = parse_recipe(text, "test");
-      EXPECT_EQ(pixels_of(read).width, 40);
-      EXPECT_EQ(pixels_of(read).values, pixels_of(recipe).values);
+      EXPECT_EQ(find_pixels(read).width, 40);
+      EXPECT_EQ(find_pixels(read).values, find_pixels(recipe).values);
       EXPECT_EQ(recipe_to_json(read), json);
     }
   }

@@ -11,19 +11,19 @@
 namespace astrolith {
 namespace {
 
-std::string bytes_of(const HeightPicture& picture) {
+std::string encode_bytes(const HeightPicture& picture) {
   RangeEncoder encoder;
   encode(picture, encoder);
   return encoder.finish();
 }
 
-HeightPicture picture_of(const std::string& bytes, std::size_t most_pixels = std::size_t{1} << 24) {
+HeightPicture decode_picture(const std::string& bytes, std::size_t most_pixels = std::size_t{1} << 24) {
   RangeDecoder decoder(bytes);
   return decode(most_pixels, decoder);
 }
 
 void expect_equal_after_coding(const HeightPicture& picture) {
-  const HeightPicture decoded = picture_of(bytes_of(picture));
+  const HeightPicture decoded = decode_picture(encode_bytes(picture));
   EXPECT_EQ(decoded.width, picture.width);
   EXPECT_EQ(decoded.height, picture.height);
   EXPECT_EQ(decoded.values, picture.values);
@@ -117,18 +117,18 @@ TEST(HeightPicture, PlainPicturesTakeFewBytes) {
   const HeightPicture plain = make_picture(200, 150, [](int, int) { return 40000; });
   const HeightPicture ramp = make_picture(200, 150, [](int x, int y) { return 30000 + 3 * x + 2 * y; });
   for (const HeightPicture& picture : {holes, plain, ramp}) expect_equal_after_coding(picture);
-  EXPECT_LT(bytes_of(holes).size(), 20u);
-  EXPECT_LT(bytes_of(plain).size(), 40u);
-  EXPECT_LT(bytes_of(ramp).size(), 400u);
+  EXPECT_LT(encode_bytes(holes).size(), 20u);
+  EXPECT_LT(encode_bytes(plain).size(), 40u);
+  EXPECT_LT(encode_bytes(ramp).size(), 400u);
 }
 
 TEST(HeightPicture, NoiseTakesHardlyMoreThanItsBits) {
   const HeightPicture values = make_picture(100, 80, [](int x, int y) { return 1 + noise(5, x, y, 65535); });
   expect_equal_after_coding(values);
-  EXPECT_LT(static_cast<double>(bytes_of(values).size()), 1.08 * 16000.0);
+  EXPECT_LT(static_cast<double>(encode_bytes(values).size()), 1.08 * 16000.0);
   const HeightPicture mask = make_picture(200, 80, [](int x, int y) { return noise(6, x, y, 2) * 5; });
   expect_equal_after_coding(mask);
-  EXPECT_LT(static_cast<double>(bytes_of(mask).size()), 1.2 * 2000.0);
+  EXPECT_LT(static_cast<double>(encode_bytes(mask).size()), 1.2 * 2000.0);
 }
 
 TEST(HeightPicture, ExtremesBesideEachOtherAreHeld) {
@@ -142,39 +142,39 @@ TEST(HeightPicture, ExtremesBesideEachOtherAreHeld) {
 TEST(HeightPicture, TerrainTakesFewerBytesThanMedianEdgePrediction) {
   const HeightPicture picture = terrain();
   expect_equal_after_coding(picture);
-  EXPECT_LT(static_cast<double>(bytes_of(picture).size()), 0.9 * median_edge_bytes(picture));
+  EXPECT_LT(static_cast<double>(encode_bytes(picture).size()), 0.9 * median_edge_bytes(picture));
 }
 
 TEST(HeightPicture, BytesAreFixed) {
-  const std::string bytes = bytes_of(terrain());
+  const std::string bytes = encode_bytes(terrain());
   Sha256 hash;
   hash.update(bytes.data(), bytes.size());
   EXPECT_EQ(hash.hex(), "0879ab679a23f345f25f7d7dacfe0b5496af6cdff84e481e933b0f5f9250aa80");
 }
 
 TEST(HeightPicture, MorePixelsThanAskedForAreRefused) {
-  const std::string bytes = bytes_of(terrain());
-  EXPECT_EQ(picture_of(bytes, 60000).pixels(), 60000u);
-  EXPECT_THROW(picture_of(bytes, 59999), DamagedStream);
+  const std::string bytes = encode_bytes(terrain());
+  EXPECT_EQ(decode_picture(bytes, 60000).pixels(), 60000u);
+  EXPECT_THROW(decode_picture(bytes, 59999), DamagedStream);
 }
 
 // A decoder may take bytes for another picture, but never for one beyond the limits.
 void expect_an_end(const std::string& bytes) {
   try {
-    const HeightPicture picture = picture_of(bytes);
+    const HeightPicture picture = decode_picture(bytes);
     EXPECT_EQ(picture.values.size(), picture.pixels());
   } catch (const DamagedStream&) {
   }
 }
 
 TEST(HeightPicture, CutStreamsEnd) {
-  const std::string bytes = bytes_of(terrain(100, 100));
+  const std::string bytes = encode_bytes(terrain(100, 100));
   for (std::size_t size = 0; size < bytes.size(); size += 197) expect_an_end(bytes.substr(0, size));
-  EXPECT_THROW(picture_of(bytes.substr(0, bytes.size() / 2)), DamagedStream);
+  EXPECT_THROW(decode_picture(bytes.substr(0, bytes.size() / 2)), DamagedStream);
 }
 
 TEST(HeightPicture, DamagedStreamsEnd) {
-  const std::string bytes = bytes_of(terrain(100, 100));
+  const std::string bytes = encode_bytes(terrain(100, 100));
   CounterRandom random(5);
   for (int i = 0; i < 40; ++i) {
     std::string changed = bytes;
@@ -200,9 +200,9 @@ TEST(HeightPicture, LargePicturesAreHeldInBands) {
     return squared < 10000 ? 5000 + squared / 8 + noise(10, x, y, 9) : 0;
   });
   expect_equal_after_coding(ball);
-  const std::string bytes = bytes_of(ball);
-  EXPECT_THROW(picture_of(bytes, ball.pixels() - 1), DamagedStream);
-  EXPECT_THROW(picture_of(bytes.substr(0, bytes.size() / 2)), DamagedStream);
+  const std::string bytes = encode_bytes(ball);
+  EXPECT_THROW(decode_picture(bytes, ball.pixels() - 1), DamagedStream);
+  EXPECT_THROW(decode_picture(bytes.substr(0, bytes.size() / 2)), DamagedStream);
   CounterRandom random(7);
   for (int i = 0; i < 10; ++i) {
     std::string changed = bytes;
@@ -216,7 +216,7 @@ TEST(HeightPicture, AFewBytesHoldAFewPixels) {
   RangeEncoder encoder;
   encoder.encode_uniform(kMostHeightPictureSide, kMostHeightPictureSide + 1);
   encoder.encode_uniform(kMostHeightPictureSide, kMostHeightPictureSide + 1);
-  EXPECT_THROW(picture_of(encoder.finish()), DamagedStream);
+  EXPECT_THROW(decode_picture(encoder.finish()), DamagedStream);
 }
 
 }  // namespace

@@ -14,12 +14,12 @@
 namespace astrolith {
 namespace {
 
-std::string error_of(const std::string& text) {
-  return testing::refusal_of([&] { parse_recipe(text, "rock.json"); });
+std::string error_message(const std::string& text) {
+  return testing::refusal_text([&] { parse_recipe(text, "rock.json"); });
 }
 
 void expect_error(const std::string& text, const std::string& part) {
-  const std::string error = error_of(text);
+  const std::string error = error_message(text);
   EXPECT_NE(error.find(part), std::string::npos) << "error is: " << error << "\nwanted: " << part;
   EXPECT_EQ(error.rfind("rock.json: ", 0), 0u) << error;
   EXPECT_EQ(error.find('\n'), std::string::npos) << error;
@@ -184,7 +184,7 @@ TEST(RecipeJson, SyntaxErrorsAreSaidPlainly) {
   expect_error(R"({"a": -})", R"(is no number; write it like -0.5 or 2e-3)");
   for (const char* bad :
        {"", "{", "{\"a\"", "[1,]", "[1 2]", "nan", "-", "\"\\x\"", "{}{}", "\xff", "// no"}) {
-    const std::string error = error_of(bad);
+    const std::string error = error_message(bad);
     EXPECT_NE(error, "no error") << bad;
     for (const char* jargon : {"literal", "exception", "syntax", "parsing", "token"}) {
       EXPECT_FALSE(testing::has(error, jargon));
@@ -208,7 +208,7 @@ TEST(RecipeJson, CostOfHostileTextIsBounded) {
 // Every prefix of a document is an error, never a crash or a silent success.
 TEST(RecipeJson, TruncatedTextIsAnError) {
   const std::string text = testing::kCompleteRecipe.substr(0, testing::kCompleteRecipe.rfind('}'));
-  for (std::size_t n = 0; n <= text.size(); ++n) EXPECT_NE(error_of(text.substr(0, n)), "no error") << n;
+  for (std::size_t n = 0; n <= text.size(); ++n) EXPECT_NE(error_message(text.substr(0, n)), "no error") << n;
 }
 
 // Up to four bytes are changed at random. The reader returns a recipe or throws one line of error.
@@ -218,7 +218,7 @@ TEST(RecipeJson, DamagedTextIsReadOrRefused) {
   for (int i = 0; i < 3000; ++i) {
     std::string text = testing::kCompleteRecipe;
     for (int k = 0; k <= i % 4; ++k) text[random.below(text.size())] = static_cast<char>(random.below(256));
-    const std::string error = error_of(text);
+    const std::string error = error_message(text);
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     if (error != "no error") ++refused;
   }

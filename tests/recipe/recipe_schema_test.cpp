@@ -85,7 +85,7 @@ class FieldLister final : public FieldVisitor {
 
 // The fields of all structs that one definition of the schema describes.
 template <class... T>
-Fields fields_of(T... structs) {
+Fields list_fields(T... structs) {
   const std::string name = "recipe";
   const Place root(name);
   FieldLister lister(root);
@@ -135,51 +135,51 @@ Combination combination(Combine kind) {
 
 // The fields of all structs, by the name of their definition in the schema.
 std::map<std::string, Fields> described() {
-  return {{"document", fields_of(Recipe{})},
-          {"provenance", fields_of(Provenance{})},
-          {"ground_albedo", fields_of(GroundAlbedo{})},
-          {"albedo_by_elevation", fields_of(AlbedoByElevation{})},
-          {"layer_albedo", fields_of(LayerAlbedo{})},
-          {"crater_albedo", fields_of(CraterAlbedo{})},
-          {"boulder_albedo", fields_of(BoulderAlbedo{})},
-          {"erosion", fields_of(Erosion{})},
-          {"family", fields_of(Family{})},
-          {"drawn_field", fields_of(DrawnField{})},
-          {"metaballs", fields_of(MetaballBody{})},
-          {"morph", fields_of(morph())},
-          {"donor", fields_of(donor())},
-          {"population", fields_of(BodyPopulation{})},
-          {"draw", fields_of(DrawConditions{})},
-          {"measured_body", fields_of(measured_body())},
-          {"r_function", fields_of(operation(Operator::kUnion))},
-          {"blend", fields_of(operation(Operator::kBlend))},
-          {"clean_union", fields_of(operation(Operator::kCleanUnion))},
-          {"warp", fields_of(Warp{})},
-          {"locality", fields_of(Locality{})},
-          {"mask", fields_of(LayerMask{})},
-          {"combine",
-           fields_of(combination(Combine::kAdd), combination(Combine::kBlend), combination(Combine::kWarp))},
-          {"gradient_noise", fields_of(fractal(Noise::kSimplex))},
-          {"worley", fields_of(fractal(Noise::kWorleyF1))},
-          {"spots", fields_of(Layer{SpotLayer{}})},
-          {"spot_part", fields_of(SpotPart{})},
-          {"sparse", fields_of(Layer{SparseLayer{}})},
-          {"random_phase", fields_of(Layer{RandomPhaseLayer{}})},
-          {"phasor", fields_of(Layer{PhasorLayer{}})},
-          {"gabor", fields_of(Layer{GaborLayer{}})},
-          {"exemplar", fields_of(Layer{ExemplarLayer{}})},
-          {"relief", fields_of(Layer{ReliefLayer{}})},
-          {"color", fields_of(LayerColor{})},
-          {"craters", fields_of(Layer{CraterLayer{}})},
-          {"crater_profile", fields_of(CraterProfile{})},
-          {"crater", fields_of(Crater{})},
-          {"weibull_sizes", fields_of(WeibullSizes{})},
-          {"clusters", fields_of(Clusters{})},
-          {"crater_population", fields_of(CraterPopulation{})},
-          {"boulders", fields_of(Layer{BoulderLayer{}})},
-          {"boulder", fields_of(Boulder{})},
-          {"boulder_population", fields_of(BoulderPopulation{})},
-          {"local_gravity", fields_of(LocalGravity{})}};
+  return {{"document", list_fields(Recipe{})},
+          {"provenance", list_fields(Provenance{})},
+          {"ground_albedo", list_fields(GroundAlbedo{})},
+          {"albedo_by_elevation", list_fields(AlbedoByElevation{})},
+          {"layer_albedo", list_fields(LayerAlbedo{})},
+          {"crater_albedo", list_fields(CraterAlbedo{})},
+          {"boulder_albedo", list_fields(BoulderAlbedo{})},
+          {"erosion", list_fields(Erosion{})},
+          {"family", list_fields(Family{})},
+          {"drawn_field", list_fields(DrawnField{})},
+          {"metaballs", list_fields(MetaballBody{})},
+          {"morph", list_fields(morph())},
+          {"donor", list_fields(donor())},
+          {"population", list_fields(BodyPopulation{})},
+          {"draw", list_fields(DrawConditions{})},
+          {"measured_body", list_fields(measured_body())},
+          {"r_function", list_fields(operation(Operator::kUnion))},
+          {"blend", list_fields(operation(Operator::kBlend))},
+          {"clean_union", list_fields(operation(Operator::kCleanUnion))},
+          {"warp", list_fields(Warp{})},
+          {"locality", list_fields(Locality{})},
+          {"mask", list_fields(LayerMask{})},
+          {"combine", list_fields(combination(Combine::kAdd), combination(Combine::kBlend),
+                                  combination(Combine::kWarp))},
+          {"gradient_noise", list_fields(fractal(Noise::kSimplex))},
+          {"worley", list_fields(fractal(Noise::kWorleyF1))},
+          {"spots", list_fields(Layer{SpotLayer{}})},
+          {"spot_part", list_fields(SpotPart{})},
+          {"sparse", list_fields(Layer{SparseLayer{}})},
+          {"random_phase", list_fields(Layer{RandomPhaseLayer{}})},
+          {"phasor", list_fields(Layer{PhasorLayer{}})},
+          {"gabor", list_fields(Layer{GaborLayer{}})},
+          {"exemplar", list_fields(Layer{ExemplarLayer{}})},
+          {"relief", list_fields(Layer{ReliefLayer{}})},
+          {"color", list_fields(LayerColor{})},
+          {"craters", list_fields(Layer{CraterLayer{}})},
+          {"crater_profile", list_fields(CraterProfile{})},
+          {"crater", list_fields(Crater{})},
+          {"weibull_sizes", list_fields(WeibullSizes{})},
+          {"clusters", list_fields(Clusters{})},
+          {"crater_population", list_fields(CraterPopulation{})},
+          {"boulders", list_fields(Layer{BoulderLayer{}})},
+          {"boulder", list_fields(Boulder{})},
+          {"boulder_population", list_fields(BoulderPopulation{})},
+          {"local_gravity", list_fields(LocalGravity{})}};
 }
 
 class RecipeFields : public ::testing::Test {
@@ -253,7 +253,7 @@ TEST_F(RecipeFields, SchemaStatesTheSameLimits) {
 // The example in docs/recipe.md is a recipe, and the schema's defaults are the reader's. Another test
 // compares the document's tables with the schema (scripts/docs.py).
 
-std::string text_of(const char* file) {
+std::string read_schema_text(const char* file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
@@ -265,7 +265,7 @@ std::string first_json_block(const std::string& markdown) {
   return markdown.substr(begin, markdown.find("```", begin) - begin);
 }
 
-nlohmann::json schema() { return nlohmann::json::parse(text_of(ASTROLITH_RECIPE_SCHEMA)); }
+nlohmann::json schema() { return nlohmann::json::parse(read_schema_text(ASTROLITH_RECIPE_SCHEMA)); }
 
 // A layer of this type with no field beyond the required ones.
 nlohmann::json least_layer(const std::string& type) {
@@ -292,7 +292,8 @@ int expect_defaults(const nlohmann::json& definition, const nlohmann::json& writ
 }
 
 TEST(RecipeReference, ExampleIsARecipe) {
-  const Recipe recipe = parse_recipe(first_json_block(text_of(ASTROLITH_RECIPE_REFERENCE)), "docs/recipe.md");
+  const Recipe recipe =
+      parse_recipe(first_json_block(read_schema_text(ASTROLITH_RECIPE_REFERENCE)), "docs/recipe.md");
   ASSERT_TRUE(recipe.body.has_value());
   EXPECT_EQ(recipe.body->spheres.size(), 2u);
   EXPECT_GE(recipe.layers.size(), 5u);
@@ -300,7 +301,7 @@ TEST(RecipeReference, ExampleIsARecipe) {
 
 TEST(RecipeReference, ExampleHasEveryField) {
   // The writer writes all fields, so the example must hold all fields in the writer's order.
-  const std::string example = first_json_block(text_of(ASTROLITH_RECIPE_REFERENCE));
+  const std::string example = first_json_block(read_schema_text(ASTROLITH_RECIPE_REFERENCE));
   EXPECT_EQ(recipe_to_json(parse_recipe(example, "docs/recipe.md")), example);
 }
 

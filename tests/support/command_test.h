@@ -24,7 +24,7 @@ struct Outcome {
 };
 
 // The words of a command line, which spaces separate; "" is an empty word.
-inline std::vector<std::string> words_of(const std::string& line) {
+inline std::vector<std::string> split_words(const std::string& line) {
   std::vector<std::string> words;
   std::istringstream text(line);
   for (std::string word; text >> std::quoted(word);) words.push_back(word);
@@ -62,7 +62,7 @@ class CommandTest : public ::testing::Test {
     folder_.write(name, content);
     return name;
   }
-  std::string text(const std::string& name) const { return text_of(folder_ / name); }
+  std::string text(const std::string& name) const { return read_text(folder_ / name); }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(text(name)); }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 

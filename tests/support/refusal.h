@@ -11,7 +11,7 @@ namespace astrolith::testing {
 
 // The message of the InputError that the work throws; "no error" where it throws none.
 template <typename Work>
-std::string refusal_of(const Work& work) {
+std::string refusal_text(const Work& work) {
   try {
     work();
   } catch (const InputError& e) {

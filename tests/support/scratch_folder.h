@@ -12,7 +12,7 @@
 
 namespace astrolith::testing {
 
-inline std::string text_of(const std::filesystem::path& file) {
+inline std::string read_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return std::string(std::istreambuf_iterator<char>(in), {});
 }

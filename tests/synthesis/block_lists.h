@@ -49,9 +49,9 @@ inline void BlockListStore::add_metaballs(const FieldView& field, const Box& box
   const Box at = body_box(field.body, field.arrays, box);
   for (std::uint32_t l = 0; l < leaves_; ++l) {
     const BodyLeaf& leaf = field.leaf(l);
-    const Box of_leaf = leaf_box(field.body, field.arrays, l, at);
+    const Box reached_box = leaf_box(field.body, field.arrays, l, at);
     for (const MetaballSphere<float>& sphere : field.arrays.span(leaf.spheres)) {
-      if (metaball_reaches(leaf, sphere, of_leaf)) metaballs.push_back(sphere);
+      if (metaball_reaches(leaf, sphere, reached_box)) metaballs.push_back(sphere);
     }
     end_list(metaballs, first_metaball);
   }

@@ -20,7 +20,7 @@ struct NoiseStatistics {
 
 // The mean, standard deviation and extremes of n values at independent places within 300 cells of the origin.
 template <typename Noise>
-NoiseStatistics statistics_of(const Noise& noise, int n) {
+NoiseStatistics noise_statistics(const Noise& noise, int n) {
   CounterRandom random(1);
   NoiseStatistics s;
   double squares = 0.0;

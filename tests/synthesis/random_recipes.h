@@ -88,7 +88,7 @@ inline BoulderLayer random_boulders(CounterRandom& random) {
 constexpr std::uint64_t kLayerKinds = 10;
 
 // A layer of a kind: the last kinds are exemplars, Gabor noise and fractals.
-inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
+inline Layer make_layer(std::uint64_t kind, CounterRandom& random) {
   switch (kind) {
     case 0:
       return random_spots(random);
@@ -113,7 +113,7 @@ inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
 
 inline Layer random_layer(CounterRandom& random) {
   const auto kind = random.below(9);
-  return layer_of_kind(kind < 6 ? kind : kind == 6 ? 6 + random.below(2) : 9, random);
+  return make_layer(kind < 6 ? kind : kind == 6 ? 6 + random.below(2) : 9, random);
 }
 
 // A body made by operations on others: one of these has a warp, and one has operations of its own.
@@ -214,7 +214,7 @@ inline Recipe wild_recipe(std::uint64_t seed) {
     body.blend_exponent = std::max(1.0, body.blend_exponent);
     body.a = body.b = std::max(random.uniform(0.3, 3.0), least_tension(body) + 0.01);
   }
-  add_layer(recipe, layer_of_kind(seed % kLayerKinds, random), random);
+  add_layer(recipe, make_layer(seed % kLayerKinds, random), random);
   for (Layer& layer : recipe.layers) {
     if (auto* fractal = std::get_if<FractalLayer>(&layer)) {
       fractal->amplitude *= std::pow(10.0, random.uniform(-1.0, 0.7));

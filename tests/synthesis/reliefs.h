@@ -11,7 +11,7 @@
 namespace astrolith::testing {
 
 // The places of a recipe's body.
-inline std::vector<ReliefPlace> places_of(const Recipe& recipe, double spacing) {
+inline std::vector<ReliefPlace> find_places(const Recipe& recipe, double spacing) {
   ArrayStore arrays;
   const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
@@ -38,7 +38,7 @@ ReliefLayer relief_layer(const Recipe& recipe, double spacing, double low, doubl
   layer.levels = 65535;
   layer.image = "test.png";
   layer.image_sha256 = std::string(64, '0');
-  const std::vector<ReliefPlace> places = places_of(recipe, spacing);
+  const std::vector<ReliefPlace> places = find_places(recipe, spacing);
   const ReliefLayout layout = relief_layout(places);
   auto image = std::make_shared<ExemplarImage>();
   image->width = layout.width, image->height = layout.height;

@@ -16,7 +16,7 @@ using JobDeclaration = std::function<JobWork(Job&)>;
 
 // The declaration of a job that stores its arguments elsewhere.
 template <class Arguments, class Result>
-JobDeclaration job_of(void (*declare)(Job&, Arguments&), Result (*work)(Job&, Arguments&)) {
+JobDeclaration make_job(void (*declare)(Job&, Arguments&), Result (*work)(Job&, Arguments&)) {
   return [declare, work](Job& job) -> JobWork {
     const auto arguments = std::make_shared<Arguments>();
     declare(job, *arguments);
@@ -48,7 +48,7 @@ class JobTest : public CommandTest {
       : CommandTest(name), declare_(std::move(declare)) {}
 
   Outcome run(const std::string& line) const override {
-    return run_job(name_, declare_, words_of(line), folder_.path());
+    return run_job(name_, declare_, split_words(line), folder_.path());
   }
 
  private:

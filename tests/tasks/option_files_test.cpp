@@ -66,11 +66,11 @@ const std::map<std::string, Declaration>& declarations() {
   return all;
 }
 
-std::vector<OptionRow*> rows_of(const OptionTable& options) {
+std::vector<OptionRow*> list_rows(const OptionTable& options) {
   std::vector<OptionRow*> rows;
   for (const auto& row : options.rows()) rows.push_back(row.get());
   for (const OptionTable::Command& command : options.commands()) {
-    for (OptionRow* row : rows_of(*command.options)) rows.push_back(row);
+    for (OptionRow* row : list_rows(*command.options)) rows.push_back(row);
   }
   return rows;
 }
@@ -80,7 +80,7 @@ class OptionFiles : public ::testing::TestWithParam<std::string> {};
 TEST_P(OptionFiles, EveryOptionThatNamesAFileSaysWhatForItIs) {
   QuietJob job(GetParam());
   const std::shared_ptr<void> kept = declarations().at(GetParam())(job);
-  for (const OptionRow* row : rows_of(job.options)) {
+  for (const OptionRow* row : list_rows(job.options)) {
     const std::string words = row->value_words();
     const bool names_file = words.find(".json") != std::string::npos ||
                             words.find("FILE") != std::string::npos ||
@@ -92,7 +92,7 @@ TEST_P(OptionFiles, EveryOptionThatNamesAFileSaysWhatForItIs) {
 TEST_P(OptionFiles, NoPairOfOptionsMayShareAFileThatIsWritten) {
   QuietJob job(GetParam());
   const std::shared_ptr<void> kept = declarations().at(GetParam())(job);
-  const std::vector<OptionRow*> rows = rows_of(job.options);
+  const std::vector<OptionRow*> rows = list_rows(job.options);
   const auto refused = [&] {
     try {
       job.options.check_files();

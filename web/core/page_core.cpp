@@ -85,7 +85,7 @@ PageState& state() {
 
 // Does the work, and turns what it throws into a status and a message.
 template <class Work>
-int status_of(const Work& work) {
+int run_guarded(const Work& work) {
   state().message.clear();
   try {
     work();
@@ -101,15 +101,15 @@ int status_of(const Work& work) {
   return 1;
 }
 
-MeshFileInfo info_of(const Recipe& recipe) {
+MeshFileInfo mesh_file_info(const Recipe& recipe) {
   MeshFileInfo info{recipe.length_unit, recipe.frame, "made by synth " + kCodeVersion.text()};
   if (!(recipe.origin == Vec3d{})) info.origin = recipe.origin;
   info.whole_body = true;
   return info;
 }
 
-nlohmann::ordered_json figures_of(const BodyMeshReport& made, const Recipe& recipe,
-                                  const TriangleMesh& mesh) {
+nlohmann::ordered_json body_figures(const BodyMeshReport& made, const Recipe& recipe,
+                                    const TriangleMesh& mesh) {
   const ManifoldReport& report = made.manifold;
   return {{"length_unit", recipe.length_unit},
           {"vertices", report.vertices},
@@ -147,8 +147,8 @@ void make(std::string_view text, const std::string& name, int resolution) {
   TriangleMesh& mesh = collector.mesh;
   if (recipe.erosion) erode_body(*recipe.erosion, mesh, host_goes_on);
   if (has_colors(recipe)) mesh.colors = SurfaceColors(recipe, name, part.field).evaluate_colors({}, mesh);
-  to.figures = figures_of(made, recipe, mesh).dump();
-  to.info = info_of(recipe);
+  to.figures = body_figures(made, recipe, mesh).dump();
+  to.info = mesh_file_info(recipe);
   to.positions = as_floats(mesh.vertices);
   to.normals = as_floats(mesh.normals);
   to.mesh = std::move(mesh);
@@ -192,7 +192,7 @@ void draw(std::string_view text, const std::string& name) {
   keep_written(recipe_to_json(to.drawn.recipe));
 }
 
-void lay_ground_of(std::string_view text, const std::string& name) {
+void lay_ground_on(std::string_view text, const std::string& name) {
   const PageState& from = state();
   keep_written(recipe_to_json(lay_ground(from.drawn, from.ground, recipe_in(text, name), name)));
 }
@@ -203,7 +203,7 @@ void lay_ground_of(std::string_view text, const std::string& name) {
 using astrolith::state;
 
 int astrolith_make(const char* recipe, std::size_t bytes, const char* name, int resolution) {
-  return astrolith::status_of([&] { astrolith::make({recipe, bytes}, name, resolution); });
+  return astrolith::run_guarded([&] { astrolith::make({recipe, bytes}, name, resolution); });
 }
 const char* astrolith_message() { return state().message.c_str(); }
 const char* astrolith_figures() { return state().figures.c_str(); }
@@ -219,16 +219,16 @@ std::size_t astrolith_vertex_count() { return state().mesh.vertices.size(); }
 std::size_t astrolith_triangle_count() { return state().mesh.triangles.size(); }
 
 int astrolith_write_mesh(const char* format) {
-  return astrolith::status_of([&] { astrolith::write_made_mesh(format); });
+  return astrolith::run_guarded([&] { astrolith::write_made_mesh(format); });
 }
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format) {
-  return astrolith::status_of([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
+  return astrolith::run_guarded([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
 }
 int astrolith_draw(const char* recipe, std::size_t bytes, const char* name) {
-  return astrolith::status_of([&] { astrolith::draw({recipe, bytes}, name); });
+  return astrolith::run_guarded([&] { astrolith::draw({recipe, bytes}, name); });
 }
 int astrolith_lay_ground(const char* recipe, std::size_t bytes, const char* name) {
-  return astrolith::status_of([&] { astrolith::lay_ground_of({recipe, bytes}, name); });
+  return astrolith::run_guarded([&] { astrolith::lay_ground_on({recipe, bytes}, name); });
 }
 const char* astrolith_bytes() { return state().written.data(); }
 std::size_t astrolith_byte_count() { return state().written.size(); }

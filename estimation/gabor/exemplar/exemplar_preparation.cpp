@@ -25,7 +25,7 @@ void heed_exemplar(const Progress& progress, double fraction) {
 }
 
 // The image whose ranks are those of `ranks` and whose values are those of `values`.
-GreyImage with_ranks_of(const GreyImage& ranks, const GreyImage& values, const Progress& progress) {
+GreyImage reordered(const GreyImage& ranks, const GreyImage& values, const Progress& progress) {
   std::vector<std::size_t> order(ranks.values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -44,13 +44,13 @@ GreyImage continued(const GreyImage& photo, ExemplarVariant variant, const Progr
   GreyImage periodic = decompose_periodic(photo).periodic;
   if (variant != ExemplarVariant::kMatched) return periodic;
   heed_exemplar(progress, 0.2);
-  return with_ranks_of(periodic, photo, stretch(progress, 0.2, 1.0));
+  return reordered(periodic, photo, stretch(progress, 0.2, 1.0));
 }
 
 // The height has the deviation of the image, not of the photo: where its periodic component lacks light from
 // one side, its grains are no higher for that.
-ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant,
-                               const Progress& progress) {
+ExemplarLayer make_variant_layer(const std::vector<GreyImage>& planes, ExemplarVariant variant,
+                                 const Progress& progress) {
   std::vector<GreyImage> image;
   for (const GreyImage& plane : planes) {
     const double from = static_cast<double>(image.size()), all = static_cast<double>(planes.size()) + 1.0;
@@ -79,7 +79,7 @@ PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const Gre
   for (const ExemplarVariant variant : kExemplarVariants) {
     const int number = static_cast<int>(variant);
     const Progress part = stretch(progress, number / 3.0, (number + 1) / 3.0);
-    ExemplarLayer layer = layer_of_variant(planes, variant, stretch(part, 0.0, 0.6));
+    ExemplarLayer layer = make_variant_layer(planes, variant, stretch(part, 0.0, 0.6));
     heed_exemplar(part, 0.6);
     const GreyImage texture = exemplar_texture_like(layer, judged, seed);
     heed_exemplar(part, 0.8);

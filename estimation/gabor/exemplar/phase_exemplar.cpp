@@ -91,7 +91,7 @@ ImageSides image_sides(const GreyImage& plane) {
 
 // The spectrum of a plane on the frequencies of the layer's image. A photo says nothing of features wider
 // than itself, so there is no power below a cycle.
-PowerSpectrum spectrum_of_plane(const GreyImage& plane, const ImageSides& sides) {
+PowerSpectrum plane_spectrum(const GreyImage& plane, const ImageSides& sides) {
   PowerSpectrum spectrum = least_leaky(tapered_power(plane, sides.width, sides.height));
   const double growth =
       std::sqrt(static_cast<double>(sides.width) * sides.height / plane.width / plane.height);
@@ -105,7 +105,7 @@ PowerSpectrum spectrum_of_plane(const GreyImage& plane, const ImageSides& sides)
 GreyImage random_texture(const GreyImage& plane, const ImageSides& sides, std::uint32_t seed,
                          const Progress& progress) {
   heed_phases(progress, 0.0);
-  const PowerSpectrum spectrum = spectrum_of_plane(plane, sides);
+  const PowerSpectrum spectrum = plane_spectrum(plane, sides);
   return random_phase_image(spectrum, seed, stretch(progress, 0.5, 1.0));
 }
 

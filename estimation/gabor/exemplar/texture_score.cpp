@@ -58,7 +58,7 @@ std::array<std::vector<double>, 3> responses(const GreyImage& image, double sigm
 
 }  // namespace
 
-TextureDistributions::Distribution TextureDistributions::distribution_of(std::vector<double> values) {
+TextureDistributions::Distribution TextureDistributions::sorted_distribution(std::vector<double> values) {
   Distribution result{{}, std::sqrt(sample_variance(values))};
   std::sort(values.begin(), values.end());
   for (int q = 0; q < kQuantiles; ++q) {
@@ -71,11 +71,11 @@ TextureDistributions::Distribution TextureDistributions::distribution_of(std::ve
 }
 
 TextureDistributions::TextureDistributions(const GreyImage& image, int side) {
-  distributions_.push_back(distribution_of(image.values));
+  distributions_.push_back(sorted_distribution(image.values));
   for (const double sigma : {1.0, 2.0, 4.0, 8.0}) {
     if (!(side > 8.0 * sigma)) break;
     for (std::vector<double>& response : responses(image, sigma)) {
-      distributions_.push_back(distribution_of(std::move(response)));
+      distributions_.push_back(sorted_distribution(std::move(response)));
     }
   }
 }

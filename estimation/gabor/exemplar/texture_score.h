@@ -33,7 +33,7 @@ class TextureDistributions {
     std::vector<double> quantiles;
     double deviation;
   };
-  static Distribution distribution_of(std::vector<double> values);
+  static Distribution sorted_distribution(std::vector<double> values);
   std::vector<Distribution> distributions_;  // of the grey values, then of each filter
 };
 

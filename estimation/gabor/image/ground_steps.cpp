@@ -20,7 +20,7 @@ using GeoTransform = std::array<double, 6>;
 constexpr GeoTransform kNoTransform{0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
 // The metres of a degree, or of what the frame counts, along a meridian and along the parallel of a latitude.
-GroundStep metres_of_angle(const OGRSpatialReference& frame, double latitude) {
+GroundStep degree_metres(const OGRSpatialReference& frame, double latitude) {
   const double angle = frame.GetAngularUnits(), metres = frame.GetSemiMajor() * angle;
   constexpr double kPole = 1.6;
   return {std::abs(latitude * angle) < kPole ? metres * portable::cos(latitude * angle) : 0.0, metres};
@@ -34,7 +34,7 @@ std::string degrees_words(const OGRSpatialReference& frame) {
 struct MiddlePixels {
   std::array<double, 3> x, y;
 };
-MiddlePixels middle_of(GDALDataset& raster, const GeoTransform& t) {
+MiddlePixels middle_pixels(GDALDataset& raster, const GeoTransform& t) {
   const double column = 0.5 * raster.GetRasterXSize(), row = 0.5 * raster.GetRasterYSize();
   const double x = t[0] + column * t[1] + row * t[2], y = t[3] + column * t[4] + row * t[5];
   return {{x, x + t[1], x + t[2]}, {y, y + t[4], y + t[5]}};
@@ -74,7 +74,7 @@ std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddleP
   const std::unique_ptr<OGRCoordinateTransformation> way(
       OGRCreateCoordinateTransformation(&plane, globe.get()));
   if (way == nullptr || way->Transform(3, middle.x.data(), middle.y.data()) == 0) return {};
-  const GroundStep metres = metres_of_angle(*globe, middle.y[0]);
+  const GroundStep metres = degree_metres(*globe, middle.y[0]);
   const auto step = [&](std::size_t k) {
     return GroundStep{rounded(metres.east * (middle.x[k] - middle.x[0])),
                       rounded(metres.north * (middle.y[k] - middle.y[0]))};
@@ -95,7 +95,7 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
   // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
   if (raster.GetGeoTransform(t.data()) != CE_None && t == kNoTransform) return {};
   const OGRSpatialReference* frame = raster.GetSpatialRef();
-  const MiddlePixels middle = middle_of(raster, t);
+  const MiddlePixels middle = middle_pixels(raster, t);
   GroundStep unit{1.0, 1.0};
   GroundSteps steps;
   if (frame == nullptr) {
@@ -105,7 +105,7 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
     steps.source =
         like_degrees ? "no unit is stated; if they are degrees, give --mm-per-px" : "no unit is stated";
   } else if (frame->IsGeographic() != 0) {
-    unit = metres_of_angle(*frame, middle.y[0]);
+    unit = degree_metres(*frame, middle.y[0]);
     steps.source = degrees_words(*frame);
   } else {
     unit = {frame->GetLinearUnits(), frame->GetLinearUnits()};

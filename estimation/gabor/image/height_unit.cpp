@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-double metres_of_name(std::string_view unit) {
+double named_unit_metres(std::string_view unit) {
   struct Unit {
     const char* name;
     double metres;
@@ -57,18 +57,18 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-double metres_of_unit(std::string unit) {
+double unit_metres(std::string unit) {
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const std::string_view whole = trimmed(unit);
-  const double metres = metres_of_name(whole);
+  const double metres = named_unit_metres(whole);
   const std::size_t end = whole.find_first_of(" (,");
   if (metres > 0.0 || end == std::string_view::npos) return metres;
   // "m s-1" is a speed: a word has two letters.
   const std::size_t next = std::min(whole.find_first_not_of(" ,", end), whole.size());
   const std::string_view rest = whole.substr(next);
   const bool words = rest.size() > 1 && (rest[0] == '(' || (is_letter(rest[0]) && is_letter(rest[1])));
-  return words && rest.substr(0, 4) != "per " ? metres_of_name(whole.substr(0, end)) : 0.0;
+  return words && rest.substr(0, 4) != "per " ? named_unit_metres(whole.substr(0, end)) : 0.0;
 }
 
 std::string value_in_label(const std::filesystem::path& file, std::string_view keyword) {

@@ -35,7 +35,7 @@ void require_usable(const GreyImage& plane, const RasterFile& raster, const std:
     throw InputError(
         fmt::format("{}: pixel ({}, {}): the value {} is beyond {:g}; name it as no data (gdal_translate "
                     "-a_nodata {}) or rescale the image",
-                    name, i % width, i / width, value, kLargestValue, raster.stored_of(value)));
+                    name, i % width, i / width, value, kLargestValue, raster.to_stored(value)));
   }
 }
 
@@ -56,7 +56,7 @@ struct Extremes {
   double lowest = std::numeric_limits<double>::infinity(), above = lowest, below = -lowest, highest = -lowest;
 };
 
-Extremes extremes_of(const GreyImage& plane) {
+Extremes find_extremes(const GreyImage& plane) {
   Extremes e;
   for (const double v : plane.values) {
     if (v < e.lowest)
@@ -74,7 +74,7 @@ Extremes extremes_of(const GreyImage& plane) {
 // Usual marks for no data that a file may store without naming them. One is taken for missing if it is the
 // lowest or, of heights, the largest value by more than all other values differ.
 std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
-  const auto [lowest, above, below, highest] = extremes_of(plane);
+  const auto [lowest, above, below, highest] = find_extremes(plane);
   constexpr double kMarks[] = {0.0, 999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0};
   constexpr double kRounded = 1e-6;  // of floats
   const bool heights = raster.scale() && raster.scale()->heights;
@@ -82,8 +82,8 @@ std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
                             const char* where) -> std::optional<std::string> {
     if (!(gap > others) || !(others > 0.0)) return {};
     for (const double mark : kMarks) {
-      const double stored = std::copysign(mark, raster.stored_of(value));
-      if (std::abs(raster.value_of(stored) - value) > kRounded * std::abs(value)) continue;
+      const double stored = std::copysign(mark, raster.to_stored(value));
+      if (std::abs(raster.to_value(stored) - value) > kRounded * std::abs(value)) continue;
       // Black and saturated pixels have brightness.
       if (!heights && !(stored < 0.0)) continue;
       std::replace(plane.values.begin(), plane.values.end(), value, std::numeric_limits<double>::quiet_NaN());

@@ -84,7 +84,7 @@ void fill(GreyImage& image, const Repeats& repeats, const Progress& progress) {
 }
 
 // The missing pixels that lie in a square of 3 x 3 missing ones.
-std::vector<bool> gaps_of(const GreyImage& image) {
+std::vector<bool> find_gaps(const GreyImage& image) {
   std::vector<bool> gaps(image.missing.size(), false);
   const auto index = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
@@ -136,7 +136,7 @@ GreyImage largest_whole_part(const GreyImage& image) {
     int left = 0, top = 0, width = 0, height = 0;
     std::int64_t area() const { return std::int64_t{width} * height; }
   } best;
-  const std::vector<bool> gaps = gaps_of(image);
+  const std::vector<bool> gaps = find_gaps(image);
   std::vector<int> known(static_cast<std::size_t>(image.width) + 1, 0);  // the last column ends every step
   for (int y = 0; y < image.height; ++y) {
     std::vector<Step> steps;

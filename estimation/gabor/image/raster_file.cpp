@@ -76,7 +76,7 @@ std::string structure(GDALMajorObject& object, const char* key) {
   return value == nullptr ? "" : value;
 }
 
-std::string driver_of(GDALDataset& dataset) { return dataset.GetDriverName(); }
+std::string driver_name(GDALDataset& dataset) { return dataset.GetDriverName(); }
 
 // Whether a PNG or a WebP says that it is animated: PNG by a chunk before its pixels, WebP in its first.
 bool is_animated(const std::string& name) {
@@ -170,17 +170,17 @@ double block_pixels(GDALRasterBand& band) {
 }
 
 // The bytes of so many pixels of this band and all others.
-double bytes_of_all(GDALRasterBand& band, double pixels) {
+double band_bytes(GDALRasterBand& band, double pixels) {
   return pixels * band.GetDataset()->GetRasterCount() * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
 }
 
 // Rows are read one by one, and each block is decoded once only where a row of blocks has room in the cache.
-void hold_row_of_blocks(GDALRasterBand& band) {
+void hold_block_row(GDALRasterBand& band) {
   int width = 0, height = 0;
   band.GetBlockSize(&width, &height);
   const double across = std::ceil(static_cast<double>(band.GetXSize()) / width);
   constexpr double kMasks = 2.0;
-  const auto bytes = static_cast<GIntBig>(kMasks * bytes_of_all(band, across * block_pixels(band)));
+  const auto bytes = static_cast<GIntBig>(kMasks * band_bytes(band, across * block_pixels(band)));
   if (GDALGetCacheMax64() < bytes) GDALSetCacheMax64(bytes);
 }
 
@@ -224,7 +224,7 @@ RasterFile::RasterFile(const std::filesystem::path& file)
   if (const char* turned = dataset_->GetMetadataItem("EXIF_Orientation"))
     orientation_ = std::clamp(std::atoi(turned), 1, 8);
   animated_ = is_animated(name_);
-  if (animated_ && driver_of(*dataset_) == "WEBP") fail("an animated WebP; save one frame of it as PNG");
+  if (animated_ && driver_name(*dataset_) == "WEBP") fail("an animated WebP; save one frame of it as PNG");
   find_bands();
   find_scale();
 }
@@ -249,17 +249,17 @@ void RasterFile::find_bands() {
   for (int k = 1; k <= std::min(count, 3); ++k) b.values.push_back(dataset_->GetRasterBand(k));
   for (GDALRasterBand* band : b.values) {
     constexpr double kSmallBlock = 1 << 22;
-    const double image = bytes_of_all(*band, 1.0 * width() * height());
+    const double image = band_bytes(*band, 1.0 * width() * height());
     if (GDALDataTypeIsComplex(band->GetRasterDataType()) != 0)
       fail("its pixels are complex numbers; save their magnitude as a GeoTIFF of 32-bit floats");
-    if (bytes_of_all(*band, block_pixels(*band)) > std::max(4.0 * image, kSmallBlock))
+    if (band_bytes(*band, block_pixels(*band)) > std::max(4.0 * image, kSmallBlock))
       fail("its tiles are much larger than the image; save it again with smaller ones");
   }
   b.white_is_zero = structure(*dataset_, "MINISWHITE") == "YES";
   const bool indices = count == 1 && GDALGetDataTypeSizeBits(first.GetRasterDataType()) <= 16;
   b.palette = indices && !b.white_is_zero ? first.GetColorTable() : nullptr;
   b.signed_bytes = structure(first, "PIXELTYPE") == "SIGNEDBYTE";
-  const std::string driver = driver_of(*dataset_);
+  const std::string driver = driver_name(*dataset_);
   b.see_through = driver == "PNG";
   if (driver == "PDS" || driver == "ISIS2") require_known_floats();
   if (driver == "ISIS2" || driver == "ISIS3") {
@@ -321,7 +321,7 @@ void RasterFile::find_scale() {
     scale.pixel_source = steps->source;
   }
   Bands& b = *bands_;
-  const double metres = metres_of_unit(b.unit);
+  const double metres = unit_metres(b.unit);
   const bool many_levels = b.as_stated ? b.values.front()->GetRasterDataType() != GDT_Byte || b.signed_bytes
                                        : full_scale(*b.values.front()) >= 65535.0;
   const bool one = b.channels() == 1 && !b.white_is_zero;
@@ -365,12 +365,12 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-double RasterFile::value_of(double stored) const {
+double RasterFile::to_value(double stored) const {
   const Bands& b = *bands_;
   return b.factor * stored + b.offset;
 }
 
-double RasterFile::stored_of(double value) const {
+double RasterFile::to_stored(double value) const {
   const Bands& b = *bands_;
   return (value - b.offset) / b.factor;
 }
@@ -378,7 +378,7 @@ double RasterFile::stored_of(double value) const {
 void RasterFile::read(const TakeRow& take, const Progress& progress) {
   const QuietGdal quiet;
   Bands& b = *bands_;
-  hold_row_of_blocks(*b.values.front());
+  hold_block_row(*b.values.front());
   const auto columns = static_cast<std::size_t>(width());
   const auto channels = static_cast<std::size_t>(b.channels());
   std::vector<double> stored(columns), row(columns * channels), alpha(b.alpha != nullptr ? columns : 0);
@@ -407,7 +407,7 @@ void RasterFile::read(const TakeRow& take, const Progress& progress) {
         }
         if (b.signed_bytes && v > 127.0) v -= 256.0;
         const bool mark = !(v >= b.least && v <= b.most) || (b.blank && v == *b.blank);
-        v = value_of(v);
+        v = to_value(v);
         row[x * channels + k] = mark ? kMissing : b.white_is_zero && !b.as_stated ? 1.0 - v : v;
       }
     }

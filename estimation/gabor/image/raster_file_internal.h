@@ -50,7 +50,7 @@ TiffTags read_tiff_tags(const std::filesystem::path& file);
 
 // The metres of a unit of length by its name, in any case; 0 for another unit. Words behind it that say from
 // where heights count are passed over: "metres above the ellipsoid", "m (MSL)".
-double metres_of_unit(std::string unit);
+double unit_metres(std::string unit);
 
 // What the label of a PDS3 image states for a keyword, without quotes; empty where it does not. GDAL keeps
 // some keywords to itself.
@@ -83,8 +83,8 @@ class RasterFile {
   void read(const TakeRow& take, const Progress& progress = {});
 
   // What read() makes of a stored number of one band, and the stored number of such a value.
-  double value_of(double stored) const;
-  double stored_of(double value) const;
+  double to_value(double stored) const;
+  double to_stored(double value) const;
 
  private:
   struct Bands;

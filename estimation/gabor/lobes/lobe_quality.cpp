@@ -25,7 +25,7 @@ double residual_scatter(const PowerSpectrum& fitted, const PowerSpectrum& period
   return sum > 0.0 ? 2.0 * std::sqrt(2.0 * std::max(0.0, v) * correlation * squares) / sum : 0.0;
 }
 
-std::vector<BandVariance> octaves_of(const PowerSpectrum& fitted, const PowerSpectrum& photo) {
+std::vector<BandVariance> octave_variances(const PowerSpectrum& fitted, const PowerSpectrum& photo) {
   const int longest = std::max(photo.width, photo.height);
   std::vector<BandVariance> bands;
   // The highest octave also holds the corners beyond 1/2 cycle per pixel.
@@ -50,7 +50,7 @@ std::vector<BandVariance> octaves_of(const PowerSpectrum& fitted, const PowerSpe
 
 }  // namespace
 
-double mean_root_of_scatter(double scatter) {
+double mean_root(double scatter) {
   // Gamma(m + 1/2) / (Gamma(m) sqrt(m)) for m = 1 / scatter: eight steps of the recurrence Gamma(m + 1) = m
   // Gamma(m), then the asymptotic series.
   const double m = 1.0 / scatter;
@@ -66,7 +66,7 @@ double mean_root_of_scatter(double scatter) {
 LobeQuality judge_lobes(const PowerSpectrum& fitted, const PowerSpectrum& periodogram,
                         double estimate_error) {
   LobeQuality quality;
-  const double c = mean_root_of_scatter(periodogram.scatter);
+  const double c = mean_root(periodogram.scatter);
   quality.periodogram_distance = optimal_transport_distance(fitted, periodogram);
   quality.perfect_distance = std::sqrt(std::max(0.0, 2.0 - 2.0 * c));
   const double sums = fitted.variance() / periodogram.variance() + 1.0;
@@ -74,7 +74,7 @@ LobeQuality judge_lobes(const PowerSpectrum& fitted, const PowerSpectrum& period
   quality.residual = std::sqrt(std::max(0.0, residual));
   quality.weak_above = std::sqrt(squared(kVisibleResidual) + squared(estimate_error) +
                                  3.0 * residual_scatter(fitted, periodogram, c));
-  quality.bands = octaves_of(fitted, periodogram);
+  quality.bands = octave_variances(fitted, periodogram);
   for (const BandVariance& band : quality.bands) quality.band_overlap += std::min(band.photo, band.noise);
   return quality;
 }

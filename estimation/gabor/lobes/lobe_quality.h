@@ -51,6 +51,6 @@ inline constexpr double kVisibleResidual = 0.1;  // half a per cent of the varia
 LobeQuality judge_lobes(const PowerSpectrum& fitted, const PowerSpectrum& periodogram, double estimate_error);
 
 // E sqrt(g) for a Gamma variate g of mean 1 and variance `scatter`, (0, 1].
-double mean_root_of_scatter(double scatter);
+double mean_root(double scatter);
 
 }  // namespace astrolith

@@ -60,7 +60,7 @@ LobeOnGrid on_grid(const SpectralLobe& lobe, int width, int height) {
 }
 
 // The sum over the lobes of their Gaussians at +c. Those at -c are mirror images.
-std::vector<double> sum_of_halves(const std::vector<LobeOnGrid>& lobes, int width, int height) {
+std::vector<double> sum_halves(const std::vector<LobeOnGrid>& lobes, int width, int height) {
   std::vector<std::vector<std::pair<const LobeOnGrid*, double>>> by_row(static_cast<std::size_t>(height));
   for (const LobeOnGrid& lobe : lobes) {
     for (std::size_t k = 0; k < lobe.y.bins.size(); ++k) {
@@ -131,7 +131,7 @@ class StopWhenAsked : public ceres::IterationCallback {
 };
 
 // The weighted optimal-transport distance: the root of the misfit, whose small offset e is neglected.
-double distance_of(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate) {
+double transport_distance(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate) {
   const LobeMisfit misfit(lobes, estimate.spectrum, estimate.weights);
   const std::vector<double> start(static_cast<std::size_t>(misfit.parameters()), 0.0);
   return std::sqrt(misfit(start, {}));
@@ -169,7 +169,7 @@ double LobeMisfit::operator()(std::span<const double> parameters, std::span<doub
     if (!std::isfinite(lobe.x + lobe.y + lobe.height)) return std::numeric_limits<double>::infinity();
     lobes.push_back(on_grid(lobe, width_, height_));
   }
-  const std::vector<double> halves = sum_of_halves(lobes, width_, height_);
+  const std::vector<double> halves = sum_halves(lobes, width_, height_);
   std::vector<double> weight(halves.size(), 0.0);  // derivative of the misfit by S
   double misfit = 0.0;
   const auto w = static_cast<std::size_t>(width_);
@@ -220,7 +220,7 @@ RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const Spectrum
     const auto fewer = static_cast<int>(0.75 * static_cast<double>(best.lobes.size()));
     RefinedLobes candidate = refine_lobes(
         select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate, progress);
-    if (candidate.lobes.empty() || distance_of(candidate.lobes, estimate) > allowed) break;
+    if (candidate.lobes.empty() || transport_distance(candidate.lobes, estimate) > allowed) break;
     best = std::move(candidate);
   }
   return best;

@@ -17,7 +17,7 @@
 namespace astrolith {
 namespace {
 
-LobeProfile profile_of(const SpectralLobe& lobe, int width, int height, double amplitude) {
+LobeProfile lobe_profile(const SpectralLobe& lobe, int width, int height, double amplitude) {
   const double deviation = lobe_deviation(lobe.bandwidth);
   return make_lobe_profile(width, height, lobe.x * width, lobe.y * height, deviation * width,
                            deviation * height, amplitude);
@@ -66,7 +66,7 @@ HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
   }
   std::vector<LobeProfile> profiles;
   for (const SpectralLobe& lobe : lobes) {
-    profiles.push_back(profile_of(lobe, spectrum.width, spectrum.height, 1.0));
+    profiles.push_back(lobe_profile(lobe, spectrum.width, spectrum.height, 1.0));
     fit.norms.push_back(0.0);
   }
   parallel_for(0, n, [&](std::int64_t i) {
@@ -116,7 +116,7 @@ std::vector<Eigen::Index> most_needed(const HeightFit& fit, int count) {
 
 }  // namespace
 
-std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std::vector<double>& x) {
+std::vector<SpectralLobe> active_lobes(const GaborDictionary& dictionary, const std::vector<double>& x) {
   std::vector<SpectralLobe> lobes;
   for (std::size_t j = 0; j < x.size(); ++j) {
     if (x[j] <= 0.0) continue;
@@ -156,18 +156,18 @@ std::vector<SpectralLobe> strongest_lobes(std::vector<SpectralLobe> lobes, int m
 }
 
 double lobe_variance(const SpectralLobe& lobe, int width, int height) {
-  const LobeProfile profile = profile_of(lobe, width, height, 1.0);
+  const LobeProfile profile = lobe_profile(lobe, width, height, 1.0);
   const double sum_x = std::accumulate(profile.x.begin(), profile.x.end(), 0.0);
   const double sum_y = std::accumulate(profile.y.begin(), profile.y.end(), 0.0);
   return 2.0 * lobe.height * (sum_x / width) * (sum_y / height);
 }
 
-PowerSpectrum spectrum_of(const std::vector<GaborLobe>& lobes, int width, int height) {
+PowerSpectrum layer_spectrum(const std::vector<GaborLobe>& lobes, int width, int height) {
   PowerSpectrum spectrum{width, height, {}};
   spectrum.power.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0);
   for (const GaborLobe& lobe : lobes) {
     const SpectralLobe unit{lobe.bandwidth, lobe.frequency_x, lobe.frequency_y, 1.0};
-    add_lobe(profile_of(unit, width, height, 1.0), lobe.variance / lobe_variance(unit, width, height),
+    add_lobe(lobe_profile(unit, width, height, 1.0), lobe.variance / lobe_variance(unit, width, height),
              spectrum.power);
   }
   spectrum.power[0] = 0.0;

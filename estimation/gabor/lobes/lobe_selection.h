@@ -18,7 +18,7 @@ struct SpectralLobe {
 };
 
 // The lobes of the atoms with a positive coefficient; x has dictionary.size() values.
-std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std::vector<double>& x);
+std::vector<SpectralLobe> active_lobes(const GaborDictionary& dictionary, const std::vector<double>& x);
 
 // Refits the heights to the spectrum without the penalty, which had pulled them down (debiasing). The fit is
 // a non-negative least squares of weight * (model - spectrum), with the weights of the dictionary. Then lobes
@@ -38,6 +38,6 @@ std::vector<SpectralLobe> strongest_lobes(std::vector<SpectralLobe> lobes, int m
 double lobe_variance(const SpectralLobe& lobe, int width, int height);
 
 // The sum of a layer's lobes on a width x height grid. Frequency 0 holds no power.
-PowerSpectrum spectrum_of(const std::vector<GaborLobe>& lobes, int width, int height);
+PowerSpectrum layer_spectrum(const std::vector<GaborLobe>& lobes, int width, int height);
 
 }  // namespace astrolith

@@ -247,7 +247,7 @@ class WorkingSetPursuit {
 
   // The bound from below may improve even where x does not.
   void update_gap(int iteration) {
-    result_.relative_gap = certificate_.relative_gap_of(result_.primal);
+    result_.relative_gap = certificate_.relative_gap_to(result_.primal);
     result_.iterations = iteration;
     result_.reached = result_.relative_gap <= options_.relative_gap;
   }
@@ -325,10 +325,10 @@ double DualityCertificate::check(std::span<const double> r, std::span<const doub
     throw WorkError(
         "basis pursuit: the duality gap is negative; the dictionary's transposed product is wrong");
   }
-  return relative_gap_of(primal_);
+  return relative_gap_to(primal_);
 }
 
-double DualityCertificate::relative_gap_of(double primal) const {
+double DualityCertificate::relative_gap_to(double primal) const {
   return primal <= 0.0 ? 0.0 : std::max(0.0, (primal - best_dual_) / primal);
 }
 

@@ -67,7 +67,7 @@ class DualityCertificate {
   double check(std::span<const double> r, std::span<const double> correlations, double sum_x);
 
   // The relative gap of an earlier P(x), with the best bound known now.
-  double relative_gap_of(double primal) const;
+  double relative_gap_to(double primal) const;
 
   double primal() const { return primal_; }        // P(x) of the last check
   double best_dual() const { return best_dual_; }  // best of all checks; at least 0, the value at theta = 0

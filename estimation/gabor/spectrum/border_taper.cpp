@@ -67,13 +67,13 @@ double bend(const GreyImage& image, int n, const Place& place) {
   return sum / std::max(1, count);
 }
 
-std::size_t index_of(const GreyImage& image, int x, int y) {
+std::size_t pixel_index(const GreyImage& image, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
 }
 
 double row_bend(const GreyImage& image, int y) {
   const int h = image.height;
-  return bend(image, image.width, [&](int x, int step) { return index_of(image, x, (y + h + step) % h); });
+  return bend(image, image.width, [&](int x, int step) { return pixel_index(image, x, (y + h + step) % h); });
 }
 
 // The bend of the place that bends third most, of separate places inside.
@@ -156,7 +156,8 @@ PeriodicDecomposition decompose_periodic(const GreyImage& image) {
 
 double column_bend(const GreyImage& image, int x) {
   const int w = image.width;
-  return bend(image, image.height, [&](int y, int step) { return index_of(image, (x + w + step) % w, y); });
+  return bend(image, image.height,
+              [&](int y, int step) { return pixel_index(image, (x + w + step) % w, y); });
 }
 
 bool repeats_along_x(const GreyImage& image) {
@@ -181,7 +182,7 @@ void BorderTaper::fade_rows() {
 
 double BorderTaper::looks() const { return independent_share(columns) * independent_share(rows); }
 
-BorderTaper taper_of(const GreyImage& image) {
+BorderTaper make_taper(const GreyImage& image) {
   const bool x = repeats_along_x(image), y = repeats_along_y(image);
   return {fading(image.width, x), fading(image.height, y), x, y};
 }

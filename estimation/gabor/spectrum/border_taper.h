@@ -43,7 +43,7 @@ struct BorderTaper {
   void fade_rows();
   double looks() const;  // share of independent values in the periodogram of a tapered image, (0, 1]
 };
-BorderTaper taper_of(const GreyImage& image);
+BorderTaper make_taper(const GreyImage& image);
 
 // taper * (image - its weighted mean) / (root mean square of the taper). A stationary texture keeps its power
 // at every frequency, up to leakage from its neighbours; its variance in this window may change.

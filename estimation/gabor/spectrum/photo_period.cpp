@@ -28,7 +28,7 @@ struct RowSums {
 };
 
 // Rows are padded with zeros, so that no products wrap around.
-RowSums sums_of_rows(const std::vector<GreyImage>& planes, const Progress& progress) {
+RowSums row_sums(const std::vector<GreyImage>& planes, const Progress& progress) {
   const int n = planes.front().width;
   const FourierTransform fourier(static_cast<int>(std::bit_ceil(2u * static_cast<unsigned>(n))), 1);
   RowSums sums{std::vector<double>(fourier.grid_size()), std::vector<double>(static_cast<std::size_t>(n))};
@@ -96,7 +96,7 @@ GreyImage transposed(const GreyImage& image) {
 int period_along_rows(const std::vector<GreyImage>& planes, const Progress& progress) {
   const int n = planes.front().width;
   if (n < 4) return 0;
-  return least_period(differences(sums_of_rows(planes, progress), planes.front().height),
+  return least_period(differences(row_sums(planes, progress), planes.front().height),
                       static_cast<std::size_t>(n));
 }
 

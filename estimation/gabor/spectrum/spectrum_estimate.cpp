@@ -226,9 +226,9 @@ double spline_index(double position, const std::vector<std::size_t>& best) {
                    octave.fraction);
 }
 
-std::vector<OctaveSmoothing> smoothing_of(const std::vector<std::size_t>& best,
-                                          const std::vector<TriedSpline>& tried,
-                                          const PowerSpectrum& periodogram) {
+std::vector<OctaveSmoothing> octave_smoothing(const std::vector<std::size_t>& best,
+                                              const std::vector<TriedSpline>& tried,
+                                              const PowerSpectrum& periodogram) {
   std::vector<OctaveSmoothing> smoothing;
   for (std::size_t octave = 0; octave < best.size(); ++octave) {
     smoothing.push_back({std::exp2(static_cast<double>(octave) + 0.5) / bins_per_cycle(periodogram),
@@ -307,7 +307,7 @@ SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progr
   const std::vector<double> positions = octave_positions(periodogram);
   const std::vector<TriedSpline> tried = try_widths(periodogram, positions, progress);
   const std::vector<std::size_t> best = best_by_octave(tried);
-  SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0, {}, 0.0};
+  SpectrumEstimate estimate{periodogram, octave_smoothing(best, tried, periodogram), 0.0, {}, 0.0};
   std::vector<double>& power = estimate.spectrum.power;
   const double floor = 1e-12 * periodogram.variance();
   const double peak = *std::max_element(periodogram.power.begin() + 1, periodogram.power.end());

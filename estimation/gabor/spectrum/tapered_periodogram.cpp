@@ -100,7 +100,7 @@ void TaperedPower::divide(double count) {
 }
 
 TaperedPower tapered_power(const GreyImage& image, int width, int height) {
-  BorderTaper taper = taper_of(image);
+  BorderTaper taper = make_taper(image);
   if (width > image.width) taper.fade_columns();
   if (height > image.height) taper.fade_rows();
   TaperedPower result{power_on_grid(faded(image, taper), width, height),

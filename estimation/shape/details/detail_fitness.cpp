@@ -70,7 +70,7 @@ double curvature_radius(const SurfaceSamples& samples) {
   return kCurvatureRadius * std::sqrt(point_spread(samples.points).mean_square);
 }
 
-ShapeHistogram histogram_of(const TriangleMesh& mesh, const SurfaceSamples& samples) {
+ShapeHistogram curvature_histogram(const TriangleMesh& mesh, const SurfaceSamples& samples) {
   const SampleCurvature curvature = sample_curvature(mesh, samples, curvature_radius(samples));
   return ahd_histogram(samples.points, samples.normals, curvature.gaussian);
 }
@@ -84,7 +84,7 @@ std::vector<MeshPlace> nearest_places(const TriangleMesh& mesh, const std::vecto
 
 // The wavelength of the first octave is at most twice the longest lag. The wavelength of every octave is at
 // least two edges.
-DetailRanges ranges_of(const std::vector<double>& lags, double edge, double residual) {
+DetailRanges detail_ranges(const std::vector<double>& lags, double edge, double residual) {
   DetailRanges ranges;
   ranges.highest_frequency = 0.5 / edge;
   ranges.lowest_frequency = std::min(0.5 / lags.back(), 0.5 * ranges.highest_frequency);
@@ -146,7 +146,7 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
       probe_(base, layout_.vertex_points(), kHeightReach),
       samples_(sample_poisson_disk(target.surface, options.samples, options.seed)),
       mesh_(layout_.mesh, nearest_places(layout_.mesh, samples_.points), curvature_radius(samples_)),
-      wanted_histogram_(histogram_of(target.surface, samples_)) {
+      wanted_histogram_(curvature_histogram(target.surface, samples_)) {
   std::vector<double> heights = target_heights(target.tree, layout_.place_points(), kHeightReach);
   // The facets of a target that is finer than the base's mesh are steeper than that mesh can reproduce. The
   // mesh is then moved to the target, and both histogram and heights are taken from it.
@@ -159,12 +159,12 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
   leave_out_strays(heights);
   wanted_roughness_ = roughness(heights, layout_.triples);
   // The roughness has the size of the residual and does not include strays.
-  ranges_ = ranges_of(layout_.lags, probe_edge(target), root_mean_square(wanted_roughness_));
+  ranges_ = detail_ranges(layout_.lags, probe_edge(target), root_mean_square(wanted_roughness_));
 }
 
 DetailScore DetailFitness::score(std::span<const FractalLayer> layers) const {
   const std::vector<double> heights = probe_.heights(layers, options_.recipe_seed);
-  return score_of(histogram(heights), heights, layers);
+  return detail_score(histogram(heights), heights, layers);
 }
 
 std::vector<DetailScore> DetailFitness::scores(std::span<const std::vector<FractalLayer>> candidates,
@@ -183,13 +183,13 @@ std::vector<DetailScore> DetailFitness::scores(std::span<const std::vector<Fract
   const auto counts = evaluator.count(sets, kDefaultBins);
   std::vector<DetailScore> scores;
   for (std::size_t i = 0; i < n; ++i) {
-    scores.push_back(score_of(ahd_histogram(inputs[i], counts[i]), heights[i], candidates[i]));
+    scores.push_back(detail_score(ahd_histogram(inputs[i], counts[i]), heights[i], candidates[i]));
   }
   return scores;
 }
 
-DetailScore DetailFitness::score_of(const ShapeHistogram& histogram, const std::vector<double>& heights,
-                                    std::span<const FractalLayer> layers) const {
+DetailScore DetailFitness::detail_score(const ShapeHistogram& histogram, const std::vector<double>& heights,
+                                        std::span<const FractalLayer> layers) const {
   return {similarity(wanted_histogram_, histogram),
           roughness_misfit(roughness(layout_.at_places(heights), layout_.triples), wanted_roughness_),
           steepness(layers)};

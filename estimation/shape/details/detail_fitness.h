@@ -104,8 +104,8 @@ class DetailFitness {
   void leave_out_strays(const std::vector<double>& heights);
   std::vector<Vec3d> moved_vertices(const std::vector<double>& heights) const;
   ShapeHistogram histogram(const std::vector<double>& heights) const;
-  DetailScore score_of(const ShapeHistogram& histogram, const std::vector<double>& heights,
-                       std::span<const FractalLayer> layers) const;
+  DetailScore detail_score(const ShapeHistogram& histogram, const std::vector<double>& heights,
+                           std::span<const FractalLayer> layers) const;
 
   FitnessOptions options_;
   ProbeLayout layout_;

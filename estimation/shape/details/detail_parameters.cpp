@@ -25,7 +25,7 @@ double greatest_slope(Noise noise) {
   return noise == Noise::kSimplex ? 7.0 : noise == Noise::kPerlin ? 3.65 : 1.0;
 }
 
-Vec3d exp_of(std::span<const double> x) { return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])}; }
+Vec3d exp_vector(std::span<const double> x) { return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])}; }
 
 }  // namespace
 
@@ -75,7 +75,7 @@ std::vector<FractalLayer> detail_layers(std::span<const double> x, const DetailR
     layer.frequency = std::exp(own[1]);
     layer.octaves = resolved_octaves(layer.frequency, own[2], ranges.highest_frequency);
     layer.amplitude = std::exp(own[3]);
-    layer.scale = exp_of(own.subspan(4, 3));
+    layer.scale = exp_vector(own.subspan(4, 3));
     layer.bias = {own[7], own[8], own[9]};
     layer.gain = x[kFirstGain + i];
     layer.lacunarity = kDetailLacunarity;

@@ -64,28 +64,29 @@ Start best_plain_noise(const DetailFitness& fitness) {
 }
 
 // Computes the scores in two halves if the evaluator's memory is too small for all candidates.
-std::vector<DetailScore> scores_of(const DetailFitness& fitness,
-                                   std::span<const std::vector<FractalLayer>> candidates,
-                                   CandidateEvaluator& evaluator) {
+std::vector<DetailScore> find_scores(const DetailFitness& fitness,
+                                     std::span<const std::vector<FractalLayer>> candidates,
+                                     CandidateEvaluator& evaluator) {
   try {
     return fitness.scores(candidates, evaluator);
   } catch (const OutOfDeviceMemory&) {
     if (candidates.size() < 2) throw;
   }
   const std::size_t half = candidates.size() / 2;
-  std::vector<DetailScore> scores = scores_of(fitness, candidates.first(half), evaluator);
-  for (const DetailScore& score : scores_of(fitness, candidates.subspan(half), evaluator))
+  std::vector<DetailScore> scores = find_scores(fitness, candidates.first(half), evaluator);
+  for (const DetailScore& score : find_scores(fitness, candidates.subspan(half), evaluator))
     scores.push_back(score);
   return scores;
 }
 
-std::vector<double> fitness_of(const DetailFitness& fitness, std::span<const std::vector<double>> points,
-                               CandidateEvaluator* evaluator) {
+std::vector<double> evaluate_fitness(const DetailFitness& fitness,
+                                     std::span<const std::vector<double>> points,
+                                     CandidateEvaluator* evaluator) {
   std::vector<std::vector<FractalLayer>> candidates;
   for (const std::vector<double>& x : points) candidates.push_back(detail_layers(x, fitness.ranges()));
   std::vector<double> values(points.size());
   if (evaluator != nullptr) {
-    const std::vector<DetailScore> scores = scores_of(fitness, candidates, *evaluator);
+    const std::vector<DetailScore> scores = find_scores(fitness, candidates, *evaluator);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = scores[i].fitness();
     return values;
   }
@@ -119,7 +120,7 @@ DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
   optimize.seed = options.seed;
   optimize.start = start.parameters;
   const BatchObjective objective = [&](std::span<const std::vector<double>> points) {
-    return fitness_of(fitness, points, options.evaluator);
+    return evaluate_fitness(fitness, points, options.evaluator);
   };
   EvaluationLog own_log;
   const BatchObjective remembered = logged(objective, options.log != nullptr ? *options.log : own_log);

@@ -56,7 +56,7 @@ std::vector<char> largest_piece(const std::vector<Vec3d>& places, std::vector<ch
   return in_piece;
 }
 
-double share_of(const std::vector<char>& marked) {
+double marked_share(const std::vector<char>& marked) {
   const auto count = static_cast<double>(std::count(marked.begin(), marked.end(), 1));
   return marked.empty() ? 0.0 : count / static_cast<double>(marked.size());
 }
@@ -68,11 +68,11 @@ std::vector<char> smooth_places(const SurfaceStatistics& target) {
   std::vector<char> smooth = largest_piece(
       target.places, far_below(means_around(target.places, roughness->values, kMeanReach * target.edge)),
       kPieceReach * target.edge);
-  return share_of(smooth) < kLeastSmoothShare ? std::vector<char>() : smooth;
+  return marked_share(smooth) < kLeastSmoothShare ? std::vector<char>() : smooth;
 }
 
 }  // namespace
 
-double unseen_share(const SurfaceStatistics& target) { return share_of(smooth_places(target)); }
+double unseen_share(const SurfaceStatistics& target) { return marked_share(smooth_places(target)); }
 
 }  // namespace astrolith

@@ -20,7 +20,7 @@ Recipe with_noise_seed(Recipe recipe, std::uint64_t k) {
 }
 
 // A share of the whole work, for one of its parts.
-Progress part_of(const Progress& progress, double begin, double end) {
+Progress part_progress(const Progress& progress, double begin, double end) {
   if (!progress) return {};
   return [=](double fraction, std::string_view words) {
     return progress(begin + (end - begin) * fraction, words);
@@ -28,8 +28,8 @@ Progress part_of(const Progress& progress, double begin, double end) {
 }
 
 // The mesh of a recipe in the target's frame, with about so many triangles.
-TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
-                               const Progress& progress) {
+TriangleMesh mesh_with_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
+                                 const Progress& progress) {
   constexpr int kFirst = 64, kLeast = 16, kMost = 1024;
   const ImplicitField field(recipe);
   const auto meshed = [&](int resolution) {
@@ -56,22 +56,22 @@ FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int see
   options.points = own_points(target.surface);
   const auto part = [&](double step) {
     const double steps = draws + 1.0;
-    return part_of(progress, step / steps, (step + 1.0) / steps);
+    return part_progress(progress, step / steps, (step + 1.0) / steps);
   };
   FitRealism result;
   result.target = surface_statistics(target.surface, options, part(0));
   for (int k = 0; k < draws; ++k) {
     const auto which = static_cast<std::uint64_t>(k);
-    TriangleMesh mesh = mesh_of_triangles(target, with_noise_seed(recipe, which), triangles, part(k + 1.0));
+    TriangleMesh mesh = mesh_with_triangles(target, with_noise_seed(recipe, which), triangles, part(k + 1.0));
     options.seed = seed + 3 * (which + 1);
     SurfaceStatistics fit = surface_statistics(mesh, options, part(k + 1.0));
-    result.verdict_of_seed.push_back(
+    result.seed_verdicts.push_back(
         judge_realism(result.target, fit, {.permutations = 999, .seed = seed}, part(k + 1.0)));
     if (k > 0) continue;
     result.mesh = std::move(mesh);
     result.fit = std::move(fit);
   }
-  result.verdict = median_verdict(result.verdict_of_seed);
+  result.verdict = median_verdict(result.seed_verdicts);
   const PartsAndHandles wanted = parts_and_handles(target),
                         made = parts_and_handles(analyze_topology(result.mesh));
   if (made != wanted) {

@@ -14,10 +14,10 @@
 namespace astrolith {
 
 struct FitRealism {
-  RealismVerdict verdict;  // medians over the seeds, lengths as fractions of the diagonal
-  std::vector<RealismVerdict> verdict_of_seed;  // the recipe's own seed first
-  TriangleMesh mesh;                            // of the recipe's own seed, in the target's frame
-  SurfaceStatistics target, fit;                // of the target, and of that mesh
+  RealismVerdict verdict;                     // medians over the seeds, lengths as fractions of the diagonal
+  std::vector<RealismVerdict> seed_verdicts;  // the recipe's own seed first
+  TriangleMesh mesh;                          // of the recipe's own seed, in the target's frame
+  SurfaceStatistics target, fit;              // of the target, and of that mesh
 };
 
 // Meshes the recipe (in the file's frame) with twice the target's triangles, at most 240,000, once for each

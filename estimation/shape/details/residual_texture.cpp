@@ -104,7 +104,7 @@ PowerSpectrum mean_periodogram(const std::vector<GreyImage>& images, double area
 ResidualTexture fit_residual_texture(const TargetBody& target, const MetaballBody& base,
                                      const ResidualTextureOptions& options, const Progress& progress) {
   const double pixel = 0.5 * probe_edge(target), width = pixel * options.side;
-  const std::vector<GreyImage> images = residual_patches(target, model_of(base), options, pixel);
+  const std::vector<GreyImage> images = residual_patches(target, to_model(base), options, pixel);
   if (images.empty()) {
     throw InputError(
         "residual texture: the body is nowhere flat enough for patches of 16 of its facets; give a finer "

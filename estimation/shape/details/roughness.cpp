@@ -20,7 +20,7 @@ constexpr double kRoughnessError = 0.02;
 
 constexpr int kMostOctavesTried = 8;
 
-double cycles_of_entry(double i) {
+double entry_cycles(double i) {
   return kLeastCycles * std::pow(kMostCycles / kLeastCycles, i / (kTableSize - 1));
 }
 
@@ -59,9 +59,9 @@ double mean_square(Noise noise, double r, CounterRandom random) {
 }  // namespace
 
 std::vector<double> roughness(std::span<const double> heights,
-                              const std::vector<std::vector<HeightTriple>>& triples_of_lag) {
+                              const std::vector<std::vector<HeightTriple>>& lag_triples) {
   std::vector<double> result;
-  for (const std::vector<HeightTriple>& triples : triples_of_lag) {
+  for (const std::vector<HeightTriple>& triples : lag_triples) {
     double sum = 0.0;
     for (const HeightTriple& t : triples) {
       const double d = heights[t.before] - 2.0 * heights[t.middle] + heights[t.after];
@@ -76,7 +76,7 @@ RoughnessModel::RoughnessModel() {
   for (std::size_t which = 0; which < 3; ++which) {
     for (int i = 0; i < kTableSize; ++i) {
       const CounterRandom random(which, static_cast<std::uint64_t>(i));
-      tables_[which].push_back(mean_square(kDetailNoises[which], cycles_of_entry(i), random));
+      tables_[which].push_back(mean_square(kDetailNoises[which], entry_cycles(i), random));
     }
   }
 }

@@ -20,7 +20,7 @@ struct HeightTriple {
 
 // The roughness at each lag. The triples of a lag are its lines.  (#lags)
 std::vector<double> roughness(std::span<const double> heights,
-                              const std::vector<std::vector<HeightTriple>>& triples_of_lag);
+                              const std::vector<std::vector<HeightTriple>>& lag_triples);
 
 // The roughness nu(r) of fractal sums, in closed form with one table for each noise. Octaves are independent,
 // so their squares add up:

@@ -22,7 +22,7 @@ constexpr double kLagRatio = std::numbers::sqrt2;
 constexpr std::size_t kFewestLags = 3;
 constexpr double kLongestLag = 0.08;  // fraction of the diagonal; longer tangents leave a curved body
 
-double edge_of_area(double triangle_area) { return std::sqrt(4.0 / std::sqrt(3.0) * triangle_area); }
+double mean_edge_length(double triangle_area) { return std::sqrt(4.0 / std::sqrt(3.0) * triangle_area); }
 
 Vec3d tangent(const Vec3d& n, double angle) {
   const auto [u, v] = crossed_tangents(n);
@@ -40,7 +40,7 @@ std::vector<double> choose_lags(double edge, double sphere_distance) {
 
 // The triangles of marching cubes have on average the area of an equilateral triangle with the edge of a
 // cell.
-TriangleMesh mesh_of_base(const MetaballBody& base, double edge) {
+TriangleMesh mesh_base(const MetaballBody& base, double edge) {
   Recipe recipe;
   recipe.body = base;
   const ImplicitField field(recipe);
@@ -147,18 +147,18 @@ MeshPlace nearest_place(const TriangleMesh& mesh, const SurfaceTree& tree, const
 }
 
 double facet_edge(const TargetBody& target) {
-  return edge_of_area(target.area / static_cast<double>(target.surface.triangles.size()));
+  return mean_edge_length(target.area / static_cast<double>(target.surface.triangles.size()));
 }
 
 double probe_edge(const TargetBody& target) {
-  return std::max(facet_edge(target), edge_of_area(target.area / kMostTriangles));
+  return std::max(facet_edge(target), mean_edge_length(target.area / kMostTriangles));
 }
 
 ProbeLayout lay_out_probes(const TargetBody& target, const MetaballBody& base, int lines,
                            std::uint64_t seed) {
   const double edge = probe_edge(target);
   ProbeLayout layout;
-  layout.mesh = mesh_of_base(base, edge);
+  layout.mesh = mesh_base(base, edge);
   layout.lags = choose_lags(edge, std::sqrt(target.area / static_cast<double>(base.num_metaballs())));
   add_lines(sample_surface(layout.mesh, lines, seed, SampleNormals::interpolated), seed, layout);
   return layout;

@@ -33,14 +33,14 @@ NumberLattice lattice_number_from(int coarsest_decimals, int number) {
   return {coarsest_decimals + number / kStepsInDecade, 99 - number % kStepsInDecade};
 }
 
-double step_of(const NumberLattice& lattice) { return *lattice_number(lattice, 1); }
+double lattice_step(const NumberLattice& lattice) { return *lattice_number(lattice, 1); }
 
 double on_lattice(const NumberLattice& lattice, double x) {
-  const std::int64_t k = std::llround(x / step_of(lattice));
+  const std::int64_t k = std::llround(x / lattice_step(lattice));
   return lattice_number(lattice, k).value_or(x);
 }
 
-double mean_distance_of(const MetaballModel& model, const std::vector<Vec3d>& points) {
+double mean_model_distance(const MetaballModel& model, const std::vector<Vec3d>& points) {
   double sum = 0.0;
   for (const double s : model_distances(model, points)) sum += std::abs(s);
   return sum / static_cast<double>(points.size());
@@ -64,7 +64,7 @@ std::size_t compact_bytes(const MetaballBody& body, const std::string& unit) {
 }
 
 // The decimals of numbers up to ten times as large as the diagonal, such as 0 for 1 to 10 km.
-int decimals_of(double diagonal) {
+int choose_decimals(double diagonal) {
   int decimals = 0;
   for (; diagonal >= 10.0 && decimals > -kMostDecimals; diagonal /= 10.0) --decimals;
   for (; diagonal < 1.0 && decimals < kMostDecimals - kDecades; diagonal *= 10.0) ++decimals;
@@ -79,7 +79,7 @@ class BodyRounding {
         model_(model),
         points_(points),
         options_(options),
-        coarsest_decimals_(decimals_of(target.diagonal)) {}
+        coarsest_decimals_(choose_decimals(target.diagonal)) {}
 
   RoundedBody run() {
     for (const double damping : kDampings) {
@@ -91,12 +91,12 @@ class BodyRounding {
   // The fewest decimals with which the body loses no more than allowed, or none.
   std::optional<RoundedBody> run_for_digits(double most_loss) const {
     const ModelRounding rounding(model_, points_, options_.refinement, kDigitsDamping);
-    const double most = (1.0 + most_loss) * mean_distance_of(model_, points_.on_surface);
+    const double most = (1.0 + most_loss) * mean_model_distance(model_, points_.on_surface);
     std::optional<std::int64_t> wrong_unrounded;
     for (int decade = 0; decade < kDecades; ++decade) {
       // Ten units of the last decimal: one of the decimal before it.
       const MetaballBody body = rounded(rounding, lattice((decade + 1) * kStepsInDecade - 1));
-      if (distance_of(body) > most) continue;
+      if (body_distance(body) > most) continue;
       if (!wrong_unrounded)
         wrong_unrounded = measured(body_in_file_frame(metaball_body(model_))).wrong_components;
       RoundedBody found = measured(body);
@@ -124,7 +124,7 @@ class BodyRounding {
   NumberLattice lattice(int number) const { return lattice_number_from(coarsest_decimals_, number); }
 
   MetaballBody rounded(const ModelRounding& rounding, const NumberLattice& lattice) const {
-    const MetaballModel model = rounding.rounded({target_.center, target_.diagonal}, step_of(lattice));
+    const MetaballModel model = rounding.rounded({target_.center, target_.diagonal}, lattice_step(lattice));
     MetaballBody body = metaball_body(model);
     body.spheres.clear();
     body.subtract.clear();
@@ -140,14 +140,14 @@ class BodyRounding {
   }
 
   // Mean |s| at the samples of a body in the file's frame, fraction of the diagonal.
-  double distance_of(const MetaballBody& body) const {
-    return mean_distance_of(model_of(in_target_frame(target_, body)), points_.on_surface);
+  double body_distance(const MetaballBody& body) const {
+    return mean_model_distance(to_model(in_target_frame(target_, body)), points_.on_surface);
   }
 
   RoundedBody measured(MetaballBody body) const {
     const MetaballBody in_frame = in_target_frame(target_, body);
     const FitCheck check = check_fit(target_, in_frame, options_.check_resolution, kCheckSamples, 1);
-    const double distance = distance_of(body);
+    const double distance = body_distance(body);
     return {std::move(body), distance, compare_components(target_, check.mesh).wrong()};
   }
 

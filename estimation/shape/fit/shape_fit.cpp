@@ -155,7 +155,7 @@ GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>&
                                                       const Progress& progress) {
   const ShapeHistogram wanted = surflet_histogram(samples.points, samples.normals);
   const Objective dissimilarity = [&](std::span<const double> x) {
-    const SurfaceSamples projected = project_onto_isosurface(model_of(body_at(packing, x)), samples.points);
+    const SurfaceSamples projected = project_onto_isosurface(to_model(body_at(packing, x)), samples.points);
     return 1.0 - similarity(wanted, surflet_histogram(projected.points, projected.normals));
   };
   GlobalParameterSearchSummary summary;
@@ -163,7 +163,7 @@ GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>&
       minimize(dissimilarity, search_bounds(static_cast<int>(packing.size()), options.max_spheres),
                options.optimize, progress);
   const MetaballBody body = body_at(packing, summary.optimization.x);
-  summary.model = model_of(body);
+  summary.model = to_model(body);
   summary.a = body.a;
   summary.b = body.b;
   summary.blend_exponent = body.blend_exponent;

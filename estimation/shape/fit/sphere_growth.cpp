@@ -77,7 +77,7 @@ class SpacedPlaces {
 
   // Takes the place if no other is too close. Returns whether it was taken.
   bool take(const Vec3d& p) {
-    const Cell cell = cell_of(p);
+    const Cell cell = cell_at(p);
     for (std::int64_t x = cell[0] - 1; x <= cell[0] + 1; ++x) {
       for (std::int64_t y = cell[1] - 1; y <= cell[1] + 1; ++y) {
         for (std::int64_t z = cell[2] - 1; z <= cell[2] + 1; ++z) {
@@ -93,7 +93,7 @@ class SpacedPlaces {
  private:
   using Cell = std::array<std::int64_t, 3>;
 
-  Cell cell_of(const Vec3d& p) const {
+  Cell cell_at(const Vec3d& p) const {
     const auto along = [&](double x) { return static_cast<std::int64_t>(std::floor(x / spacing_)); };
     return {along(p.x), along(p.y), along(p.z)};
   }

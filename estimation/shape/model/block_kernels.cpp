@@ -18,8 +18,8 @@ struct KindTerms {
 class SignedTerms {
  public:
   explicit SignedTerms(const MetaballTotals<double>& totals)
-      : added_(terms_of(totals.added, 1.0 / (totals.added.kernel + double{kKernelFloor}))),
-        subtracted_(terms_of(totals.subtracted, 1.0 / (1.0 + totals.subtracted.kernel))) {
+      : added_(weighted_terms(totals.added, 1.0 / (totals.added.kernel + double{kKernelFloor}))),
+        subtracted_(weighted_terms(totals.subtracted, 1.0 / (1.0 + totals.subtracted.kernel))) {
     subtracted_.weight *= -1.0;
   }
 
@@ -27,7 +27,7 @@ class SignedTerms {
   Vec3d weighted_mean() const { return added_.mean - subtracted_.mean; }  // G
 
  private:
-  static KindTerms terms_of(const MetaballSums<double>& sums, double weight) {
+  static KindTerms weighted_terms(const MetaballSums<double>& sums, double weight) {
     return {weight, sums.weighted * weight};
   }
 
@@ -153,7 +153,7 @@ void BlockKernels::evaluate(const MetaballModel& model, const ModelEvaluation& e
   }
   spheres_.clear();
   for (const std::int32_t i : spheres)
-    spheres_.push_back(kernel_of(model.spheres[static_cast<std::size_t>(i)]));
+    spheres_.push_back(make_kernel(model.spheres[static_cast<std::size_t>(i)]));
   kernels_.resize(spheres_.size());
   added_ = subtracted_ = {};
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
@@ -199,19 +199,19 @@ void BlockKernels::differentiate(std::span<const Slopes> slopes, const Columns& 
     }
   }
   const LanePoints points{x_.data(), y_.data(), z_.data()};
-  const auto slopes_of = [&](const MetaballSphere<double>& s) {
+  const auto slope_view = [&](const MetaballSphere<double>& s) {
     const std::size_t kind = s.subtractive() ? 1 : 0;
     return LaneSlopeView{mean_x.data(), mean_y.data(), mean_z.data(), weight[kind].data(), base[kind].data()};
   };
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    add_by_sharpness(points, spheres_[i], kernels_[i].data(), slopes_of(spheres_[i]), sum.data());
+    add_by_sharpness(points, spheres_[i], kernels_[i].data(), slope_view(spheres_[i]), sum.data());
   }
   for (std::size_t j = 0; j < points_; ++j) {
     by_log_sharpness[j] = sharpness_ * (slopes[j].by_sharpness + sum[j]);
   }
   for (std::size_t k = 0; k < selected.spheres.size(); ++k) {
     const auto i = static_cast<std::size_t>(selected.spheres[k]);
-    write_by_sphere(points, spheres_[i], sharpness_, kernels_[i].data(), slopes_of(spheres_[i]), points_,
+    write_by_sphere(points, spheres_[i], sharpness_, kernels_[i].data(), slope_view(spheres_[i]), points_,
                     4 * selected.count, by_sphere[selected.columns[k]].data());
   }
 }
@@ -227,7 +227,7 @@ double distance_with_slopes(const MetaballModel& model, const ModelEvaluation& e
 
 double level_with_slopes(const MetaballModel& model, const MetaballTotals<double>& totals,
                          BlockKernels::Slopes& slopes) {
-  const double level = level_of(model, totals.net().kernel);
+  const double level = model_level(model, totals.net().kernel);
   slopes = {1.0 / model.sharpness, {}, -level / model.sharpness};
   return level;
 }

@@ -95,7 +95,7 @@ std::vector<double> model_levels(const MetaballModel& model, std::span<const Vec
   std::vector<double> levels(points.size());
   for_each_block(model, points, [&](std::span<const std::int32_t> own, const ClusterScratch& scratch) {
     for (std::size_t j = 0; j < own.size(); ++j) {
-      levels[static_cast<std::size_t>(own[j])] = level_of(model, scratch.kernels.totals(j).net().kernel);
+      levels[static_cast<std::size_t>(own[j])] = model_level(model, scratch.kernels.totals(j).net().kernel);
     }
   });
   return levels;
@@ -133,7 +133,7 @@ ModelEvaluation evaluation_parameters(const MetaballModel& model) {
 
 double support_radii(const MetaballModel& model) { return gaussian_support(model.sharpness); }
 
-double level_of(const MetaballModel& model, double sum) {
+double model_level(const MetaballModel& model, double sum) {
   return std::log(sum + double{kKernelFloor}) / model.sharpness;
 }
 
@@ -151,7 +151,7 @@ MetaballBody metaball_body(const MetaballModel& model) {
   return body;
 }
 
-MetaballModel model_of(const MetaballBody& body) {
+MetaballModel to_model(const MetaballBody& body) {
   if (!body.operations.empty()) throw InputError("body: operations: the fit knows metaballs alone");
   if (body.kernel != Kernel::kGaussian) throw InputError("body: kernel: the fit knows the Gaussian alone");
   MetaballModel model{body.blend_exponent * body.a, {body.spheres.begin(), body.spheres.end()}};

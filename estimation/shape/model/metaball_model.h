@@ -38,7 +38,7 @@ struct MetaballModel {
 };
 
 // The sphere in the form that synthesis evaluates.
-inline MetaballSphere<double> kernel_of(const ModelSphere& s) {
+inline MetaballSphere<double> make_kernel(const ModelSphere& s) {
   const double inverse_square = 1.0 / (s.radius * s.radius);
   return {s.center, s.subtractive ? -inverse_square : inverse_square};
 }
@@ -57,7 +57,7 @@ ModelEvaluation evaluation_parameters(const MetaballModel& model);
 double support_radii(const MetaballModel& model);
 
 // The level L at a point where the sum A is `sum`.
-double level_of(const MetaballModel& model, double sum);
+double model_level(const MetaballModel& model, double sum);
 
 // How much L changes at this point if a metaball is removed that holds `share` < 1 of its kind's sum.
 double level_lost(const MetaballModel& model, double share);
@@ -67,7 +67,7 @@ MetaballBody metaball_body(const MetaballModel& model);
 
 // The model of a recipe's body. Throws InputError for bodies that the fit does not support: bodies made by
 // operations, and other kernels than the Gaussian.
-MetaballModel model_of(const MetaballBody& body);
+MetaballModel to_model(const MetaballBody& body);
 
 // Takes Newton steps p <- p + s(p) n with n = -grad L / |grad L|. No step is longer than the largest radius.
 // The normals have length 1 and point out of the body. A point that no sphere reaches stays where it is, and

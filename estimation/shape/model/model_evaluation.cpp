@@ -18,7 +18,7 @@ struct IndexedPoint {
 };
 
 // As Box::extend(), which calls a function of the C library for each coordinate.
-Box box_of(std::span<const IndexedPoint> points) {
+Box bounding_box(std::span<const IndexedPoint> points) {
   Box box;
   for (const auto& [at, index] : points) {
     box.min = {std::min(box.min.x, at.x), std::min(box.min.y, at.y), std::min(box.min.z, at.z)};
@@ -27,7 +27,7 @@ Box box_of(std::span<const IndexedPoint> points) {
   return box;
 }
 
-PointCluster cluster_of(std::span<const IndexedPoint> points, const Vec3d& center) {
+PointCluster make_cluster(std::span<const IndexedPoint> points, const Vec3d& center) {
   PointCluster cluster{{}, center, 0.0};
   cluster.points.reserve(points.size());
   for (const IndexedPoint& p : points) {
@@ -39,9 +39,9 @@ PointCluster cluster_of(std::span<const IndexedPoint> points, const Vec3d& cente
 
 // Splits the points into all of these clusters.
 void split(std::span<IndexedPoint> points, std::span<PointCluster> clusters) {
-  const Box box = box_of(points);
+  const Box box = bounding_box(points);
   if (clusters.size() == 1) {
-    clusters.front() = cluster_of(points, box.center());
+    clusters.front() = make_cluster(points, box.center());
     return;
   }
   // Each side gets its share of the clusters and of the points, so that clusters are nearly full.
@@ -70,7 +70,7 @@ bool reaches(const ModelSphere& sphere, double reach, const Vec3d& center, doubl
   return squared_norm(sphere.center - center) < distance * distance;
 }
 
-ClusterGroup group_of(std::span<const PointCluster> clusters, std::size_t begin, std::size_t end) {
+ClusterGroup make_group(std::span<const PointCluster> clusters, std::size_t begin, std::size_t end) {
   Box box;
   for (std::size_t c = begin; c < end; ++c) box.extend(clusters[c].center);
   ClusterGroup group{begin, end, box.center(), 0.0};
@@ -97,7 +97,7 @@ std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::siz
 std::vector<ClusterGroup> group_clusters(std::span<const PointCluster> clusters, std::size_t size) {
   std::vector<ClusterGroup> groups;
   for (std::size_t begin = 0; begin < clusters.size(); begin += size) {
-    groups.push_back(group_of(clusters, begin, std::min(begin + size, clusters.size())));
+    groups.push_back(make_group(clusters, begin, std::min(begin + size, clusters.size())));
   }
   return groups;
 }

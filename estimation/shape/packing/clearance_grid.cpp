@@ -52,8 +52,8 @@ class GridBuilder {
     for (const Triangle& t : body_.triangles) {
       Box box;
       for (const std::uint32_t v : t) box.extend(body_.vertices[v]);
-      const auto [lx, ly, lz] = cell_of(box.min, -1.0);
-      const auto [hx, hy, hz] = cell_of(box.max, 1.0);
+      const auto [lx, ly, lz] = cell_at(box.min, -1.0);
+      const auto [hx, hy, hz] = cell_at(box.max, 1.0);
       for (int z = lz; z <= hz; ++z) {
         for (int y = ly; y <= hy; ++y) {
           for (int x = lx; x <= hx; ++x) {
@@ -155,7 +155,7 @@ class GridBuilder {
     }
   }
 
-  std::array<int, 3> cell_of(const Vec3d& p, double margin) const {
+  std::array<int, 3> cell_at(const Vec3d& p, double margin) const {
     const Vec3d q = (p - grid_.origin) * (1.0 / grid_.step);
     const auto at = [margin](double v, int cells) {
       return std::clamp(static_cast<int>(std::round(v + margin)), 0, cells - 1);

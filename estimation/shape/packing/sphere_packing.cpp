@@ -69,15 +69,17 @@ class Packer {
   };
 
   bool full() const { return spheres_.size() >= static_cast<std::size_t>(options_.max_spheres); }
-  std::size_t bin_of(float clearance) const { return static_cast<std::size_t>(clearance / bin_width_); }
+  std::size_t clearance_bin(float clearance) const {
+    return static_cast<std::size_t>(clearance / bin_width_);
+  }
 
   void sort_places() {
     float largest = 0.0f;
     for (const float c : grid_.clearance) largest = std::max(largest, c);
-    bins_.resize(bin_of(largest) + 1);
+    bins_.resize(clearance_bin(largest) + 1);
     for (std::size_t i = 0; i < grid_.clearance.size(); ++i) {
       if (grid_.clearance[i] > 0.0f)
-        bins_[bin_of(grid_.clearance[i])].push_back(static_cast<std::uint32_t>(i));
+        bins_[clearance_bin(grid_.clearance[i])].push_back(static_cast<std::uint32_t>(i));
     }
   }
 
@@ -94,7 +96,7 @@ class Packer {
     for (const Place& place : places) {
       const float clearance = grid_.clearance[place.cell];
       if (clearance <= 0.0f) continue;
-      const std::size_t bin = bin_of(clearance);
+      const std::size_t bin = clearance_bin(clearance);
       if (bin < bins_.size()) {
         bins_[bin].push_back(place.cell);
       } else if (full() || !place_sphere(place.cell)) {

@@ -15,12 +15,12 @@ namespace {
 
 // CHOLMOD starts four threads for each of its many small loops, on any machine. Here its loops run on the
 // calling thread, which takes a sixth less of the processor's time and a quarter less on the clock.
-class NoThreadsOfOpenMp {
+class OpenMpThreadsOff {
  public:
-  NoThreadsOfOpenMp() { omp_set_max_active_levels(0); }
-  NoThreadsOfOpenMp(const NoThreadsOfOpenMp&) = delete;
-  NoThreadsOfOpenMp& operator=(const NoThreadsOfOpenMp&) = delete;
-  ~NoThreadsOfOpenMp() { omp_set_max_active_levels(before_); }
+  OpenMpThreadsOff() { omp_set_max_active_levels(0); }
+  OpenMpThreadsOff(const OpenMpThreadsOff&) = delete;
+  OpenMpThreadsOff& operator=(const OpenMpThreadsOff&) = delete;
+  ~OpenMpThreadsOff() { omp_set_max_active_levels(before_); }
 
  private:
   int before_ = omp_get_max_active_levels();
@@ -218,7 +218,7 @@ const Eigen::SparseMatrix<double>& NormalEquations::damped(double damping) {
 }
 
 bool NormalEquations::solve(double damping, Eigen::VectorXd& step) {
-  const NoThreadsOfOpenMp alone;
+  const OpenMpThreadsOff alone;
   factor_.factorize(damped(damping));
   if (factor_.info() != Eigen::Success) return false;
   step = factor_.solve(-gradient_);

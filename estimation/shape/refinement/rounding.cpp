@@ -17,7 +17,7 @@ constexpr double kFarthest = 0.3;
 double nearest_multiple(double x, double step) { return std::round(x / step) * step; }
 
 // The parameters of the model with its own sharpness, however near to the limits of the refinement.
-RefinementParameters parameters_of(const MetaballModel& model) {
+RefinementParameters to_parameters(const MetaballModel& model) {
   constexpr double kNearest = 1.0 - 1e-9;
   RefinementParameters parameters(model);
   const double part = (std::log(model.sharpness) - parameters.middle) / parameters.half;
@@ -66,7 +66,7 @@ struct ModelRounding::Factor {
 ModelRounding::ModelRounding(const MetaballModel& model, const FitPoints& points,
                              const RefinementOptions& options, double damping)
     : model_(model), factor_(std::make_unique<Factor>()) {
-  const RefinementParameters parameters = parameters_of(model);
+  const RefinementParameters parameters = to_parameters(model);
   ResidualBlocks residuals(points, options, parameters);
   residuals.evaluate();
   NormalEquations equations(residuals, model.spheres.size());
@@ -79,7 +79,7 @@ ModelRounding::ModelRounding(const MetaballModel& model, const FitPoints& points
 ModelRounding::~ModelRounding() = default;
 
 MetaballModel ModelRounding::rounded(const FileFrame& frame, double step) const {
-  RefinementParameters parameters = parameters_of(model_);
+  RefinementParameters parameters = to_parameters(model_);
   const NumberRounding round(parameters, frame, step);
   const auto count = static_cast<Eigen::Index>(4 * parameters.spheres.size() + 1);
   Eigen::VectorXd wanted(count);

@@ -36,7 +36,7 @@ ASTROLITH_KERNEL void find_weights(const std::array<float, 3>& at, PointWeights&
 struct Square {
   float of[4][4];
 };
-ASTROLITH_KERNEL std::int64_t corner_of_square(const PointWeights& p, int axis, std::int32_t tile) {
+ASTROLITH_KERNEL std::int64_t square_corner(const PointWeights& p, int axis, std::int32_t tile) {
   return std::int64_t{kReliefTileSize} * tile + p.corner[(axis + 2) % 3] * kReliefTileSide +
          p.corner[(axis + 1) % 3];
 }
@@ -100,17 +100,17 @@ ASTROLITH_SIMD_CLONES double read_run(SampleSum of, const SampleRun& run, const 
   }
   double errors = 0.0;
   for (std::uint32_t i = run.first; i < run.end;) {
-    const int square = square_of(samples[i].at);
+    const int square = square_index(samples[i].at);
     PointWeights p;
     find_weights(samples[i].at, p);
     std::int64_t corner[3];
     Square in[3], out[3];
     for (int n = 0; n < count; ++n) {
-      corner[n] = corner_of_square(p, axes[n], run.tiles[static_cast<std::size_t>(axes[n])]);
+      corner[n] = square_corner(p, axes[n], run.tiles[static_cast<std::size_t>(axes[n])]);
       load(values + corner[n], in[n]);
       out[n] = {};
     }
-    for (; i < run.end && square_of(samples[i].at) == square; ++i) {
+    for (; i < run.end && square_index(samples[i].at) == square; ++i) {
       const ReliefSample& s = samples[i];
       find_weights(s.at, p);
       float blend = 0.0f;
@@ -145,14 +145,14 @@ void extend_ranges(const SampleRun& run, const std::vector<ReliefSample>& sample
   for (std::uint32_t i = run.first; i < run.end;) {
     PointWeights p;
     find_weights(samples[i].at, p);
-    const int square = square_of(samples[i].at);
+    const int square = square_index(samples[i].at);
     HeightRange square_range = kNoHeights;
-    for (; i < run.end && square_of(samples[i].at) == square; ++i)
+    for (; i < run.end && square_index(samples[i].at) == square; ++i)
       extend(square_range, {samples[i].height, samples[i].height});
     for (int a = 0; a < 3; ++a) {
       const std::int32_t tile = run.tiles[static_cast<std::size_t>(a)];
       if (tile == 0) continue;
-      const auto corner = static_cast<std::size_t>(corner_of_square(p, a, tile));
+      const auto corner = static_cast<std::size_t>(square_corner(p, a, tile));
       for (std::size_t j = 0; j < 4; ++j) {
         for (std::size_t k = 0; k < 4; ++k)
           extend(slot_ranges[corner + j * kReliefTileSide + k], square_range);
@@ -172,7 +172,7 @@ float weight_around(const float* weights, const std::array<std::int32_t, 3>& til
     const std::int32_t tile = tiles[static_cast<std::size_t>(a)];
     if (tile == 0) continue;
     Square square;
-    load(weights + corner_of_square(p, a, tile), square);
+    load(weights + square_corner(p, a, tile), square);
     total += weighted_sum(square, p.along[(a + 1) % 3], p.along[(a + 2) % 3]);
   }
   return total;
@@ -211,8 +211,7 @@ std::vector<double> ReliefBlend::read_cells(SampleSum of, const std::vector<doub
       0, static_cast<std::int64_t>(errors.size()),
       [&](std::int64_t number) {
         const auto cell = static_cast<std::size_t>(number);
-        for (std::uint32_t r = samples_.first_run_of_cell[cell]; r < samples_.first_run_of_cell[cell + 1];
-             ++r)
+        for (std::uint32_t r = samples_.cell_first_run[cell]; r < samples_.cell_first_run[cell + 1]; ++r)
           errors[cell] += read_run(of, samples_.runs[r], samples_.samples.data(), values.data(), sums.data());
       },
       16);
@@ -242,8 +241,7 @@ std::vector<HeightRange> ReliefBlend::ranges() const {
       0, static_cast<std::int64_t>(samples_.cells()),
       [&](std::int64_t number) {
         const auto cell = static_cast<std::size_t>(number);
-        for (std::uint32_t r = samples_.first_run_of_cell[cell]; r < samples_.first_run_of_cell[cell + 1];
-             ++r)
+        for (std::uint32_t r = samples_.cell_first_run[cell]; r < samples_.cell_first_run[cell + 1]; ++r)
           extend_ranges(samples_.runs[r], samples_.samples, slot_ranges);
       },
       16);

@@ -35,10 +35,10 @@ struct ReliefSamples {
   std::vector<float> weights;         // (tiles x kReliefTileSize) of the places of the tiles; 0 without one
   std::vector<ReliefSample> samples;  // cell by cell
   std::vector<SampleRun> runs;
-  std::vector<std::uint32_t> first_run_of_cell;  // of the cells with samples, and the number of runs
-  std::size_t left_out = 0;                      // number of points that no height reaches
+  std::vector<std::uint32_t> cell_first_run;  // of the cells with samples, and the number of runs
+  std::size_t left_out = 0;                   // number of points that no height reaches
 
-  std::size_t cells() const { return first_run_of_cell.size() - 1; }
+  std::size_t cells() const { return cell_first_run.size() - 1; }
 };
 
 // The places of the recipe's body at this spacing, and the samples of `surface`: its vertices, and four
@@ -50,7 +50,7 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
                              const Progress& progress);
 
 // The number of the square of places around a point in its cell; points of one square read the same places.
-inline int square_of(const std::array<float, 3>& at) {
+inline int square_index(const std::array<float, 3>& at) {
   const auto along = [](float x) { return std::min(static_cast<int>(x), kReliefCell - 1); };
   return along(at[0]) + kReliefCell * (along(at[1]) + kReliefCell * along(at[2]));
 }

@@ -95,7 +95,7 @@ constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth t
 constexpr int kMostLevels = 65535;
 // Places for each vertex of the surface; models of few vertices get more, since their facets are what is to
 // be kept.
-constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSmallModel = 20000.0;
+constexpr double kPlacesPerVertex = 1.2, kMostPlacesPerVertex = 12.0, kSmallModelPlaces = 20000.0;
 
 // The least spacing that the picture and the cells of a body without folds bear. In the picture the maps of
 // the three axes stand below one another, and show the body from both sides.
@@ -144,8 +144,8 @@ void limit_to_samples(const ReliefBlend& blend, std::vector<double>& heights) {
   }
 }
 
-std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
-                                          const std::vector<std::uint16_t>& codes) {
+std::shared_ptr<ExemplarImage> draw_heights(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
+                                            const std::vector<std::uint16_t>& codes) {
   const ReliefLayout layout = relief_layout(places);
   if (std::max(layout.width, layout.height) > kMostHeightPictureSide) {
     throw InputError("relief.spacing: would take a picture of heights of more than " +
@@ -197,7 +197,7 @@ std::size_t halve_heights(const std::vector<Vec3d>& points, Recipe& recipe) {
 double least_relief_spacing(const TriangleMesh& surface) {
   const double vertices = static_cast<double>(surface.vertices.size());
   const double places =
-      std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
+      std::max(kPlacesPerVertex * vertices, std::min(kMostPlacesPerVertex * vertices, kSmallModelPlaces));
   // The square of the spacing holds one place where the surface faces an axis.
   return std::max(std::sqrt(surface_area(surface) / places), least_spacing(surface));
 }
@@ -242,7 +242,7 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   limit_to_samples(blend, heights);
   const double step = options.step > 0.0 ? options.step : kDefaultStep * blend.mean_residual(heights);
   const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
-  layer.pixels = picture_of(layer, samples.places, codes);
+  layer.pixels = draw_heights(layer, samples.places, codes);
   fit.heights = heights.size();
   fit.base_distance = blend.mean_residual({});
   fit.residual = blend.mean_residual(heights);

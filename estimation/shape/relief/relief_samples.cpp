@@ -73,7 +73,7 @@ class SampleFinder {
   SampleFinder(const BodyGround& ground, const ReliefSamples& made, double spacing)
       : ground_(ground), made_(made), spacing_(spacing) {}
 
-  std::vector<PlacedSample> samples_of(const std::vector<Vec3d>& points) const {
+  std::vector<PlacedSample> find_samples(const std::vector<Vec3d>& points) const {
     std::vector<PlacedSample> samples;
     if (points.empty()) return samples;
     samples.reserve(points.size());
@@ -124,8 +124,8 @@ std::vector<PlacedSample> sorted(std::vector<std::vector<PlacedSample>>& groups,
         const auto i = static_cast<std::size_t>(number);
         std::stable_sort(all.begin() + first[i], all.begin() + first[i + 1],
                          [](const PlacedSample& a, const PlacedSample& b) {
-                           return std::tuple(a.tiles, square_of(a.sample.at)) <
-                                  std::tuple(b.tiles, square_of(b.sample.at));
+                           return std::tuple(a.tiles, square_index(a.sample.at)) <
+                                  std::tuple(b.tiles, square_index(b.sample.at));
                          });
       },
       4096);
@@ -162,7 +162,7 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
                  [&](std::int64_t number) {
                    const auto g = static_cast<std::size_t>(number);
                    const std::vector<Vec3d> group_points = points.group(g);
-                   groups[g] = finder.samples_of(group_points);
+                   groups[g] = finder.find_samples(group_points);
                    asked[g] = group_points.size() - groups[g].size();
                  });
   }
@@ -174,13 +174,13 @@ ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, 
   for (const PlacedSample& s : placed) {
     const auto number = static_cast<std::uint32_t>(made.samples.size());
     const bool new_cell = s.cell != cell;
-    if (new_cell) made.first_run_of_cell.push_back(static_cast<std::uint32_t>(made.runs.size()));
+    if (new_cell) made.cell_first_run.push_back(static_cast<std::uint32_t>(made.runs.size()));
     if (new_cell || s.tiles != made.runs.back().tiles) made.runs.push_back({s.tiles, number, number});
     cell = s.cell;
     made.samples.push_back(s.sample);
     made.runs.back().end = number + 1;
   }
-  made.first_run_of_cell.push_back(static_cast<std::uint32_t>(made.runs.size()));
+  made.cell_first_run.push_back(static_cast<std::uint32_t>(made.runs.size()));
   return made;
 }
 

@@ -33,7 +33,7 @@ struct NamedSurface {
   const SurfaceStatistics& statistics;
 };
 
-constexpr Ink kInkOfA{0.16, 0.35, 0.63}, kInkOfB{0.83, 0.37, 0.10};
+constexpr Ink kInkA{0.16, 0.35, 0.63}, kInkB{0.83, 0.37, 0.10};
 
 std::vector<double> sorted_values(const LocalStatistic& statistic) {
   std::vector<double> sorted = statistic.values;
@@ -49,7 +49,7 @@ std::vector<std::pair<double, double>> quantile_curve(const std::vector<double>&
   return curve;
 }
 
-std::string heading_of(const LocalStatistic& statistic) {
+std::string make_heading(const LocalStatistic& statistic) {
   const char* heading = quantity_traits(statistic.quantity).heading;
   return statistic.radius > 0.0 ? fmt::format("{}, {:g} edges", heading, statistic.radius) : heading;
 }
@@ -60,10 +60,10 @@ void draw_quantiles(Figure& page, const Rectangle& at, const LocalStatistic& a, 
                high = std::max(sorted_quantile(sorted_a, 0.99), sorted_quantile(sorted_b, 0.99));
   const double room = std::max(0.05 * (high - low), 1e-9);
   const Axis x = linear_axis(0.0, 100.0, ""), y = linear_axis(low - room, high + room, "");
-  page.text(at.x, at.y - 5.0, heading_of(a), 8.0);
+  page.text(at.x, at.y - 5.0, make_heading(a), 8.0);
   page.axes(at, x, y);
-  page.curve(at, x, y, quantile_curve(sorted_a), kInkOfA);
-  page.curve(at, x, y, quantile_curve(sorted_b), kInkOfB);
+  page.curve(at, x, y, quantile_curve(sorted_a), kInkA);
+  page.curve(at, x, y, quantile_curve(sorted_b), kInkB);
 }
 
 // The roughness at every vertex: the mean over all places, with weights that fall as the fourth power of the
@@ -117,8 +117,8 @@ void write_quantile_curves(const NamedSurface& a, const NamedSurface& b, const s
   }
   const std::size_t rows = (both.size() + kColumns - 1) / kColumns;
   Figure page(kColumns * kAcross + 10.0, kTop + static_cast<double>(rows) * kDown);
-  page.text(kLeft, 20.0, a.name, 10.0, Figure::Align::kLeft, true, kInkOfA);
-  page.text(kLeft + kAcross, 20.0, b.name, 10.0, Figure::Align::kLeft, true, kInkOfB);
+  page.text(kLeft, 20.0, a.name, 10.0, Figure::Align::kLeft, true, kInkA);
+  page.text(kLeft + kAcross, 20.0, b.name, 10.0, Figure::Align::kLeft, true, kInkB);
   page.text(page.width() - 10.0, 20.0, "values over the share of places below them, %", 9.0,
             Figure::Align::kRight);
   for (std::size_t k = 0; k < both.size(); ++k) {
@@ -204,26 +204,26 @@ TurnableSurface colored_surface(const std::string& caption, TriangleMesh mesh, c
 }
 
 // Target and fit, each coloured by its distance from the other.
-TurnableSurfaces target_beside_fit(const TargetBody& target, const TriangleMesh& target_of_page,
+TurnableSurfaces target_beside_fit(const TargetBody& target, const TriangleMesh& page_target,
                                    const ShapeFitResult& fit) {
   const double largest = std::max(fit.check.distance.p99, 1e-9);
-  return {colored_surface("target", target_of_page, SurfaceTree(fit.check.mesh), largest),
+  return {colored_surface("target", page_target, SurfaceTree(fit.check.mesh), largest),
           colored_surface("fit", for_page(fit.check.mesh), target.tree, largest),
           "the distance from the other body, of the bounding-box diagonal", "0", percent(largest)};
 }
 
-TurnableSurfaces target_beside_likeness(const TargetBody& target, const TriangleMesh& target_of_page,
+TurnableSurfaces target_beside_likeness(const TargetBody& target, const TriangleMesh& page_target,
                                         TriangleMesh likeness) {
   for (Vec3d& p : likeness.vertices) p = (1.0 / target.diagonal) * (p - target.center);
-  return {{"target", target_of_page, {}}, {"another body of its kind", for_page(likeness), {}}, "", "", ""};
+  return {{"target", page_target, {}}, {"another body of its kind", for_page(likeness), {}}, "", "", ""};
 }
 
 // The pairs to turn, but for bodies of very many small parts, which cannot be decimated for a page.
 std::vector<TurnableSurfaces> surface_pairs(const TargetBody& target, const ShapeFitResult& fit,
                                             const TriangleMesh* likeness) {
-  const TriangleMesh target_of_page = for_page(target.mesh);
-  std::vector<TurnableSurfaces> pairs{target_beside_fit(target, target_of_page, fit)};
-  if (likeness != nullptr) pairs.push_back(target_beside_likeness(target, target_of_page, *likeness));
+  const TriangleMesh page_target = for_page(target.mesh);
+  std::vector<TurnableSurfaces> pairs{target_beside_fit(target, page_target, fit)};
+  if (likeness != nullptr) pairs.push_back(target_beside_likeness(target, page_target, *likeness));
   std::erase_if(pairs, [](const TurnableSurfaces& pair) {
     return std::max(pair.left.mesh.vertices.size(), pair.right.mesh.vertices.size()) > kMostPageVertices;
   });
@@ -280,7 +280,7 @@ std::string statistic_words(const StatisticComparison& c, double edge, const Len
     return "correlation of roughness, " + fmt::format("{:.3g}", c.radius * edge * lengths.scale) + " to " +
            fmt::format("{:.3g}", c.reach * edge * lengths.scale) + " " + lengths.unit + " apart";
   }
-  const std::string name = name_of(c.quantity);
+  const std::string name = quantity_name(c.quantity);
   return c.radius > 0.0
              ? name + " within " + fmt::format("{:.3g}", c.radius * edge * lengths.scale) + " " + lengths.unit
              : name;

@@ -27,11 +27,11 @@ double cone_volume(const TriangleMesh& mesh, const Triangle& t) {
   return dot(mesh.vertices[t[0]], cross(mesh.vertices[t[1]], mesh.vertices[t[2]])) / 6.0;
 }
 
-std::vector<FitComponent> components_of(const TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> component_of_triangle = triangle_components(mesh);
+std::vector<FitComponent> find_components(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> triangle_component = triangle_components(mesh);
   std::vector<FitComponent> components;
-  for (std::size_t t = 0; t < component_of_triangle.size(); ++t) {
-    const std::size_t number = component_of_triangle[t];
+  for (std::size_t t = 0; t < triangle_component.size(); ++t) {
+    const std::size_t number = triangle_component[t];
     if (number >= components.size()) components.resize(number + 1);
     FitComponent& component = components[number];
     component.volume += cone_volume(mesh, mesh.triangles[t]);
@@ -47,7 +47,7 @@ std::vector<FitComponent> components_of(const TriangleMesh& mesh) {
 std::vector<double> component_volumes(const TargetBody& target) {
   std::vector<double> volumes(static_cast<std::size_t>(target.components), 0.0);
   for (std::size_t t = 0; t < target.mesh.triangles.size(); ++t) {
-    volumes[target.component_of_triangle[t]] += cone_volume(target.mesh, target.mesh.triangles[t]);
+    volumes[target.triangle_component[t]] += cone_volume(target.mesh, target.mesh.triangles[t]);
   }
   return volumes;
 }
@@ -59,12 +59,12 @@ std::size_t nearest_component(const TargetBody& target, const TriangleMesh& fit,
   const std::size_t stride = std::max<std::size_t>(1, component.vertices.size() / kVotes);
   for (std::size_t k = 0; k < component.vertices.size(); k += stride) {
     const ClosestPoint closest = target.tree.closest(fit.vertices[component.vertices[k]]);
-    ++votes[target.component_of_triangle[closest.triangle]];
+    ++votes[target.triangle_component[closest.triangle]];
   }
   return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
-StrayComponent stray_of(const TriangleMesh& fit, const FitComponent& component) {
+StrayComponent make_stray(const TriangleMesh& fit, const FitComponent& component) {
   StrayComponent stray{component.volume < 0.0, component.box.center(), 0.0};
   for (const std::uint32_t v : component.vertices) {
     stray.radius = std::max(stray.radius, norm(fit.vertices[v] - stray.center));
@@ -88,7 +88,7 @@ PartsAndHandles parts_and_handles(const MeshTopology& topology) {
 
 ComponentComparison compare_components(const TargetBody& target, const TriangleMesh& fit) {
   const std::vector<double> wanted = component_volumes(target);
-  std::vector<FitComponent> components = components_of(fit);
+  std::vector<FitComponent> components = find_components(fit);
   std::stable_sort(components.begin(), components.end(), [](const FitComponent& a, const FitComponent& b) {
     return std::abs(a.volume) > std::abs(b.volume);
   });
@@ -98,7 +98,7 @@ ComponentComparison compare_components(const TargetBody& target, const TriangleM
     const std::size_t nearest = nearest_component(target, fit, component);
     const bool alike = (component.volume < 0.0) == (wanted[nearest] < 0.0);
     if (!alike || found[nearest]) {
-      comparison.strays.push_back(stray_of(fit, component));
+      comparison.strays.push_back(make_stray(fit, component));
     } else {
       found[nearest] = true;
     }

@@ -27,7 +27,7 @@ struct OuterSurface {
   TriangleMesh mesh;            // without the buried triangles; open along the seam where components meet
   std::int64_t components = 1;  // number of components of the union
   // (#F of the whole mesh) the union's component that each triangle belongs to, 0 .. components - 1
-  std::vector<std::uint32_t> component_of_triangle;
+  std::vector<std::uint32_t> triangle_component;
 };
 
 // SurfaceTree takes the union of this many components at most.
@@ -58,7 +58,7 @@ bool reaches_into(const Component& component, const SurfaceTree& other) {
 }
 
 // (#components) the component of the union that each component of the mesh belongs to, numbered from 0.
-std::vector<std::uint32_t> groups_of_union(const std::vector<Component>& components) {
+std::vector<std::uint32_t> union_groups(const std::vector<Component>& components) {
   std::vector<std::uint32_t> group(components.size());
   std::iota(group.begin(), group.end(), 0u);
   for (std::size_t b = 0; b < components.size(); ++b) {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> groups_of_union(const std::vector<Component>& compone
   return group;
 }
 
-std::int64_t count_of(const std::vector<std::uint32_t>& numbers) {
+std::int64_t component_count(const std::vector<std::uint32_t>& numbers) {
   return std::int64_t{1} + *std::max_element(numbers.begin(), numbers.end());
 }
 
@@ -104,16 +104,16 @@ TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, d
 // than `depth` inside the union; `depth` is in the mesh's unit. The mesh comes back unchanged if it has one
 // component, more than 64 components, or cavities.
 OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
-  std::vector<std::uint32_t> component_of_triangle = triangle_components(mesh);
-  const std::vector<Component> components = separate(mesh, component_of_triangle);
+  std::vector<std::uint32_t> triangle_component = triangle_components(mesh);
+  const std::vector<Component> components = separate(mesh, triangle_component);
   const bool solid = std::all_of(components.begin(), components.end(),
                                  [](const Component& one) { return volume(one.mesh) > 0.0; });
   if (components.empty() || !solid) {
-    return {mesh, count_of(component_of_triangle), std::move(component_of_triangle)};
+    return {mesh, component_count(triangle_component), std::move(triangle_component)};
   }
-  const std::vector<std::uint32_t> group = groups_of_union(components);
-  for (std::uint32_t& component : component_of_triangle) component = group[component];
-  return {without_buried(mesh, tree, depth), count_of(group), std::move(component_of_triangle)};
+  const std::vector<std::uint32_t> group = union_groups(components);
+  for (std::uint32_t& component : triangle_component) component = group[component];
+  return {without_buried(mesh, tree, depth), component_count(group), std::move(triangle_component)};
 }
 
 // A body with a volume below this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
@@ -131,12 +131,12 @@ constexpr double kWrongWindings = 0.02;
 
 TriangleMesh numbered_by_use(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
-  std::vector<std::uint32_t> new_of_old(mesh.vertices.size(), kUnused);
+  std::vector<std::uint32_t> new_number(mesh.vertices.size(), kUnused);
   TriangleMesh compact;
   for (const Triangle& triangle : mesh.triangles) {
     Triangle renumbered{};
     for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& index = new_of_old[triangle[k]];
+      std::uint32_t& index = new_number[triangle[k]];
       if (index == kUnused) {
         index = static_cast<std::uint32_t>(compact.vertices.size());
         compact.vertices.push_back(mesh.vertices[triangle[k]]);
@@ -192,8 +192,7 @@ void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vecto
 
 // The share of the surface just under which the winding number is not 1: places that lie outside the body, or
 // inside it twice.
-double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface,
-                               const Progress& progress) {
+double wrong_winding_share(const TriangleMesh& mesh, const TriangleMesh& surface, const Progress& progress) {
   const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
   const std::int64_t count = std::clamp(kWindingTriangles / triangles, kFewestWindings, kMostWindings);
   const SurfaceSamples samples = sample_surface(surface, count, 1);
@@ -211,7 +210,7 @@ double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& sur
 
 void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& name,
                          const Progress& progress) {
-  const double share = share_of_wrong_windings(mesh, surface, progress);
+  const double share = wrong_winding_share(mesh, surface, progress);
   if (share <= kWrongWindings) return;
   throw CrossingMesh(name + ": mesh passes through itself or has parts inside out (about " +
                      std::to_string(static_cast<int>(std::lround(100.0 * share))) +
@@ -286,7 +285,7 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Prog
           area,
           body_volume,
           outer.components,
-          std::move(outer.component_of_triangle),
+          std::move(outer.triangle_component),
           box.center(),
           diagonal,
           std::move(remarks)};

@@ -35,8 +35,8 @@ struct TargetBody {
   TriangleMesh surface;  // `mesh` without the walls that are buried where components overlap
   double area;           // area of `surface`
   double volume;         // volume of `mesh`, > 0; overlaps count twice
-  std::int64_t components;                           // number of components of the union
-  std::vector<std::uint32_t> component_of_triangle;  // (#F of mesh) 0 .. components - 1
+  std::int64_t components;                        // number of components of the union
+  std::vector<std::uint32_t> triangle_component;  // (#F of mesh) 0 .. components - 1
   // p_in_file = center + diagonal * p_in_body, in the file's unit.
   Vec3d center;
   double diagonal;

@@ -96,7 +96,7 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   Recipe gravel = potato_recipe(10, 8);
   gravel.layers = {testing::gabor_layer(0.06, 0.003)};
   const ImplicitField noisy(gravel);
-  ASSERT_EQ(obstacle_on_gpu(noisy.tables(), block_side(grid_of_field(noisy.bounds(), 12))), "");
+  ASSERT_EQ(obstacle_on_gpu(noisy.tables(), block_side(field_grid(noisy.bounds(), 12))), "");
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
@@ -108,7 +108,7 @@ TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
     Recipe recipe = potato_recipe(10, 8);
     recipe.layers = layers;
     const ImplicitField field(recipe);
-    ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(grid_of_field(field.bounds(), 40))), "");
+    ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field_grid(field.bounds(), 40))), "");
     expect_same(on_twin(field, 40), on_cpu(field, 40));
   }
 }
@@ -143,7 +143,7 @@ TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
     if (entry.path().extension() != ".json") continue;
     const ImplicitField field(read_recipe(entry.path()));
     constexpr double kMostCells = 32768.0;  // more impulses in a block take the twin minutes
-    const double side = block_side(grid_of_field(field.bounds(), kExampleCells));
+    const double side = block_side(field_grid(field.bounds(), kExampleCells));
     if (!obstacle_on_gpu(field.tables(), side, kMostCells).empty()) continue;
     SCOPED_TRACE(entry.path().filename().string());
     expect_same(on_twin(field, kExampleCells), on_cpu(field, kExampleCells));
@@ -168,9 +168,8 @@ void expect_same_patches(const Recipe& recipe, const Vec3d& direction, double si
     const ImplicitField field(recipe, "recipe", PatchCube{center, turned ? 1.7321 * size : size});
     EXPECT_EQ(field.has_patch_layers(), has_patch_layers);
     const PatchField patch = turned ? PatchField(field, center, axes) : PatchField(field, center);
-    ASSERT_EQ(
-        obstacle_on_gpu(field.patch_tables(), block_side(grid_of_patch(patch.place(), size, resolution))),
-        "");
+    ASSERT_EQ(obstacle_on_gpu(field.patch_tables(), block_side(patch_grid(patch.place(), size, resolution))),
+              "");
     expect_same(patch_on_twin(patch, size, resolution), patch_on_cpu(patch, size, resolution));
   }
 }

@@ -22,7 +22,7 @@ using testing::random_recipe;
 using Place = std::array<int, 3>;
 
 // The mixed blocks of all layers, sorted.
-std::vector<Place> blocks_of_cpu(const ImplicitField& field, const MeshGrid& grid) {
+std::vector<Place> cpu_blocks(const ImplicitField& field, const MeshGrid& grid) {
   const FieldBlock whole = field.gather(grid.samples.box({0, 0, 0}, grid.samples.cells, grid.samples.step));
   std::vector<Place> all;
   for (int z = 0; z < grid.blocks(2); ++z) {
@@ -49,8 +49,8 @@ void expect_same_lists(const BlockListStore& cpu, const BlockListArrays& twin) {
 
 void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& order) {
   const ImplicitField field(recipe);
-  const MeshGrid grid = grid_of_field(field.bounds(), resolution);
-  const std::vector<Place> cpu = blocks_of_cpu(field, grid);
+  const MeshGrid grid = field_grid(field.bounds(), resolution);
+  const std::vector<Place> cpu = cpu_blocks(field, grid);
 
   HostBackend backend(std::size_t{1} << 34, order);
   const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
@@ -97,7 +97,7 @@ TEST(BlockCuller, TakesThreadsInAnyOrder) {
 // A body that fills the border of the grid is refused, as it is by the CPU.
 TEST(BlockCuller, SaysWhereTheBodyFillsTheBorder) {
   const ImplicitField field(testing::sphere_recipe(1.0));
-  const MeshGrid grid = grid_of_field({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
+  const MeshGrid grid = field_grid({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
   HostBackend backend;
   const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
   BlockCuller<HostBackend> culler(backend, field.tables(), on_backend.view(), grid, 0.0);

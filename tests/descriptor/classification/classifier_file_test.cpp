@@ -27,7 +27,7 @@ TEST(ClassifierFile, KeepsEveryVote) {
     for (const auto& row : testing::clusters(3, 50, 8, 1.0, 2).rows)
       EXPECT_EQ(read.votes(row), written.votes(row));
     write_classifier(read, "test 1", folder / "again.yml");
-    EXPECT_EQ(testing::text_of(folder / "again.yml"), testing::text_of(folder / "model.yml"));
+    EXPECT_EQ(testing::read_text(folder / "again.yml"), testing::read_text(folder / "model.yml"));
   }
 }
 
@@ -101,7 +101,7 @@ TEST(ClassifierFile, RefusesWhatIsWrongByItsPlace) {
 TEST(ClassifierFile, SurvivesDamage) {
   const testing::ScratchFolder folder;
   write_classifier(small_classifier(2), "test 1", folder / "model.yml");
-  const std::string whole = testing::text_of(folder / "model.yml");
+  const std::string whole = testing::read_text(folder / "model.yml");
   CounterRandom random(3);
   for (int trial = 0; trial < 400; ++trial) {
     std::string text = whole;

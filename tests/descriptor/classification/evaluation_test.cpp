@@ -67,12 +67,12 @@ TEST(StratifiedFolds, HoldEveryClassInEqualShares) {
   labels.insert(labels.end(), 5, 2);
   const std::vector<int> folds = stratified_folds(labels, 3, 5, 1);
   for (int c = 0; c < 3; ++c) {
-    const auto of_class = std::count(labels.begin(), labels.end(), c);
+    const auto class_count = std::count(labels.begin(), labels.end(), c);
     for (int fold = 0; fold < 5; ++fold) {
       std::int64_t both = 0;
       for (std::size_t i = 0; i < labels.size(); ++i) both += labels[i] == c && folds[i] == fold ? 1 : 0;
-      EXPECT_GE(both, of_class / 5);
-      EXPECT_LE(both, (of_class + 4) / 5);
+      EXPECT_GE(both, class_count / 5);
+      EXPECT_LE(both, (class_count + 4) / 5);
     }
   }
   for (int fold = 0; fold < 5; ++fold) {

@@ -152,7 +152,7 @@ class EveryKind : public ::testing::TestWithParam<FeatureKind> {
 };
 
 TEST_P(EveryKind, HasItsNameAndSize) {
-  EXPECT_EQ(feature_kind_from_name(name_of(GetParam())), GetParam());
+  EXPECT_EQ(feature_kind_from_name(feature_name(GetParam())), GetParam());
   const std::vector<float> features = shape_features(testing::torus(1, 0.4), options());
   EXPECT_EQ(features.size(), feature_count(options()));
   // The mean feature is exactly 1 for histograms and about 1 for spectra.
@@ -172,11 +172,11 @@ TEST_P(EveryKind, IsNearerToItselfThanToAnother) {
   const std::vector<float> a = shape_features(torus, options()), b = shape_features(moved, other_seed),
                            c = shape_features(testing::icosphere(4), options());
   const SurfaceSamples s = sample_poisson_disk(torus, 1500, 3);
-  const std::vector<float> of_points = point_features(s.points, s.normals, options());
-  EXPECT_EQ(shape_features({s.points, {}, s.normals}, options()), of_points);
+  const std::vector<float> point_values = point_features(s.points, s.normals, options());
+  EXPECT_EQ(shape_features({s.points, {}, s.normals}, options()), point_values);
   const double itself = feature_distance(GetParam(), a, b), another = feature_distance(GetParam(), a, c);
   EXPECT_LT(4 * itself, another);
-  EXPECT_LT(2 * feature_distance(GetParam(), a, of_points), another);
+  EXPECT_LT(2 * feature_distance(GetParam(), a, point_values), another);
   EXPECT_EQ(feature_distance(GetParam(), a, a), 0);
 }
 
@@ -195,7 +195,7 @@ TEST_P(EveryKind, RefusesNumbersOutOfRange) {
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
                          ::testing::Values(FeatureKind::wahl, FeatureKind::ahd, FeatureKind::d2,
                                            FeatureKind::shapedna),
-                         [](const auto& kind) { return name_of(kind.param); });
+                         [](const auto& kind) { return feature_name(kind.param); });
 
 TEST(ShapeFeatures, OtherNamesAreRefused) { EXPECT_THROW(feature_kind_from_name("d3"), InputError); }
 

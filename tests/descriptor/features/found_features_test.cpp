@@ -134,9 +134,9 @@ TEST(FoundFeatures, RefusesWhatIsNoSurface) {
     options.points = points;
     find_features(mesh, options);
   };
-  EXPECT_EQ(testing::refusal_of([&] { find(testing::icosphere(2), 0); }),
+  EXPECT_EQ(testing::refusal_text([&] { find(testing::icosphere(2), 0); }),
             "features: needs a mesh of 1000 triangles or more; this one has 320");
-  EXPECT_EQ(testing::refusal_of([&] { find(testing::icosphere(4), 10); }),
+  EXPECT_EQ(testing::refusal_text([&] { find(testing::icosphere(4), 10); }),
             "features: points must be 0, or 500 to 1000000");
 }
 

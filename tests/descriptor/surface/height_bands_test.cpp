@@ -22,7 +22,7 @@ using testing::WaveHeights;
 constexpr std::int64_t kPoints = 20000;
 const double kRadius = std::sqrt(std::sqrt(3.0) * kPoints / (8 * std::numbers::pi));  // edges
 
-HeightBands bands_of(const TriangleMesh& mesh, std::int64_t points = kPoints) {
+HeightBands find_bands(const TriangleMesh& mesh, std::int64_t points = kPoints) {
   return height_bands(even_surface(mesh, points, 1));
 }
 
@@ -47,7 +47,7 @@ TEST(HeightBands, ARippleLiesInTheBandOfItsWavelength) {
   const double edge = 1 / kRadius;
   for (const auto& [degree, most] : {std::pair{60, 0}, {30, 1}, {15, 2}, {8, 3}}) {
     const double amplitude = 0.4 * edge;
-    const HeightBands found = bands_of(
+    const HeightBands found = find_bands(
         testing::rough_sphere<6>([&, l = degree](const Vec3d& p) { return amplitude * sectoral(l, p); }));
     ASSERT_EQ(found.bands.size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -63,16 +63,16 @@ TEST(HeightBands, ARippleLiesInTheBandOfItsWavelength) {
 }
 
 TEST(HeightBands, ASphereHasNoRelief) {
-  const HeightBands found = bands_of(icosphere(6));
+  const HeightBands found = find_bands(icosphere(6));
   for (const HeightBand& band : found.bands) EXPECT_LT(band.rms, 0.006) << band.from;
 }
 
 TEST(HeightBands, SizeAndPlaceDoNotMatter) {
   const WaveHeights waves(0.2, 1);
   TriangleMesh mesh = testing::rough_sphere<6>([&](const Vec3d& p) { return 0.01 * waves(p); });
-  const HeightBands one = bands_of(mesh);
+  const HeightBands one = find_bands(mesh);
   for (Vec3d& p : mesh.vertices) p = 1000 * p + Vec3d{3000, 200, 10};
-  const HeightBands large = bands_of(mesh);
+  const HeightBands large = find_bands(mesh);
   for (std::size_t k = 0; k < 4; ++k)
     EXPECT_NEAR(large.bands[k].rms, one.bands[k].rms, 1e-3 * one.bands[k].rms);
   EXPECT_NEAR(*large.coupling, *one.coupling, 5e-3);
@@ -106,7 +106,7 @@ TEST(HeightBands, AreCoupledWhereTheyAreHighTogether) {
   const HarmonicHeights shorter(18, 1), longer(6, 2);
   const auto half = [](double along) { return 0.6 + 0.4 * std::clamp(3 * along, -1.0, 1.0); };
   const auto coupling = [&](const auto& where_longer) {
-    return *bands_of(testing::rough_sphere<6>([&](const Vec3d& p) {
+    return *find_bands(testing::rough_sphere<6>([&](const Vec3d& p) {
               return 0.007 * (where_longer(p) * longer(p) + half(p.z) * shorter(p));
             })).coupling;
   };
@@ -120,14 +120,14 @@ TEST(HeightBands, OfACrumpledMeshAreBounded) {
   TriangleMesh mesh = icosphere(4);
   CounterRandom random(1, 0);
   for (Vec3d& p : mesh.vertices) p *= 1 + 0.4 * random.uniform();
-  const HeightBands found = bands_of(mesh, 5000);
+  const HeightBands found = find_bands(mesh, 5000);
   ASSERT_EQ(found.bands.size(), 3u);
   for (const HeightBand& band : found.bands) EXPECT_LT(band.rms, 3) << band.from;
 }
 
 TEST(HeightBands, ASmallBodyHasFewer) {
-  EXPECT_EQ(bands_of(icosphere(4), 2500).bands.size(), 2u);  // radius 13 edges
-  EXPECT_FALSE(bands_of(icosphere(4), 2500).coupling);
+  EXPECT_EQ(find_bands(icosphere(4), 2500).bands.size(), 2u);  // radius 13 edges
+  EXPECT_FALSE(find_bands(icosphere(4), 2500).coupling);
 }
 
 TEST(HeightBands, AreTheSameForAnyNumberOfThreads) {
@@ -135,7 +135,7 @@ TEST(HeightBands, AreTheSameForAnyNumberOfThreads) {
   const TriangleMesh mesh = testing::rough_sphere<6>([&](const Vec3d& p) { return 0.01 * waves(p); });
   const auto measured = [&](int threads) {
     const ThreadLimit limit(threads);
-    return bands_of(mesh);
+    return find_bands(mesh);
   };
   const HeightBands one = measured(1), four = measured(4);
   for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(one.bands[k].rms, four.bands[k].rms);
@@ -200,7 +200,7 @@ TEST(EvenedSurface, StopsWhenAsked) {
                WorkError);
 }
 
-std::vector<Vec3d> points_of(const LocalQuadric& quadric, int n, double noise, std::uint64_t seed) {
+std::vector<Vec3d> sample_points(const LocalQuadric& quadric, int n, double noise, std::uint64_t seed) {
   CounterRandom random(seed, 0);
   std::vector<Vec3d> points;
   for (int i = 0; i < n; ++i) {
@@ -213,7 +213,7 @@ std::vector<Vec3d> points_of(const LocalQuadric& quadric, int n, double noise, s
 const LocalQuadric kQuadric{{0.3, -0.2, 0.1, 0.5, -0.7, 0.25}};
 
 TEST(LocalQuadric, FindsAParaboloidExactly) {
-  const auto fitted = fit_quadric(points_of(kQuadric, 40, 0, 1));
+  const auto fitted = fit_quadric(sample_points(kQuadric, 40, 0, 1));
   ASSERT_TRUE(fitted);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(fitted->c[k], kQuadric.c[k], 1e-13);
 }
@@ -231,14 +231,14 @@ TEST(LocalQuadric, HasNoneWherePointsDoNotDetermineIt) {
   std::vector<Vec3d> line;
   for (int i = 0; i < 30; ++i) line.push_back({0.05 * i, 0.1 * i, 0.0});
   EXPECT_FALSE(fit_quadric(line));
-  EXPECT_FALSE(fit_quadric(points_of(kQuadric, 5, 0, 2)));
+  EXPECT_FALSE(fit_quadric(sample_points(kQuadric, 5, 0, 2)));
 }
 
 TEST(ResidualMoments, RmsOfKnownNoiseIsUnbiased) {
   double mean_square = 0;
   const int trials = 400, n = 20;
   for (int t = 0; t < trials; ++t) {
-    const auto points = points_of(kQuadric, n, 0.1, static_cast<std::uint64_t>(10 + t));
+    const auto points = sample_points(kQuadric, n, 0.1, static_cast<std::uint64_t>(10 + t));
     const auto fitted = fit_quadric(points);
     ASSERT_TRUE(fitted);
     std::vector<double> residuals;

@@ -122,7 +122,7 @@ TEST(Realism, RejectsFiveInAHundredDrawsOfOneKind) {
 }
 
 // 40 centres, spread evenly over the unit sphere along a spiral.
-std::vector<std::uint8_t> regions_of(const std::vector<Vec3d>& places) {
+std::vector<std::uint8_t> find_regions_by_side(const std::vector<Vec3d>& places) {
   std::vector<std::uint8_t> regions;
   for (const Vec3d& place : places) {
     std::size_t nearest = 0;
@@ -152,7 +152,7 @@ SurfaceStatistics drawn_smoothly(std::uint64_t seed) {
     s.places.push_back(testing::random_direction(random));
     s.local[0].values.push_back(up(s.places.back()) - down(s.places.back()));
   }
-  s.regions = regional_sums(regions_of(s.places), s.places, s.local[0].values, 1.0 / 40);
+  s.regions = regional_sums(find_regions_by_side(s.places), s.places, s.local[0].values, 1.0 / 40);
   return s;
 }
 

@@ -84,7 +84,7 @@ TriangleMesh sheet(int side, const Heights& height) {
   return mesh;
 }
 
-inline double mean_of(const std::vector<double>& values) {
+inline double mean_value(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) sum += v;
   return sum / static_cast<double>(values.size());

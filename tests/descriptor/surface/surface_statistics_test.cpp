@@ -9,7 +9,7 @@ namespace {
 
 using testing::BumpHeights;
 using testing::icosphere;
-using testing::mean_of;
+using testing::mean_value;
 using testing::rough_sphere;
 using testing::sheet;
 using testing::WaveHeights;
@@ -22,8 +22,8 @@ SurfaceStatisticsOptions few_places() {
   return options;
 }
 
-double mean_of(const SurfaceStatistics& s, SurfaceQuantity quantity, double radius) {
-  return mean_of(s.find(quantity, radius)->values);
+double mean_value(const SurfaceStatistics& s, SurfaceQuantity quantity, double radius) {
+  return mean_value(s.find(quantity, radius)->values);
 }
 
 TEST(SurfaceStatistics, ASphereIsSmoothAndLevel) {
@@ -31,9 +31,9 @@ TEST(SurfaceStatistics, ASphereIsSmoothAndLevel) {
   EXPECT_EQ(s.points, 10240);
   EXPECT_EQ(s.places.size(), 800u);
   EXPECT_NEAR(s.edge, kEdge, 0.0005);
-  EXPECT_LT(mean_of(s, SurfaceQuantity::roughness, 3), std::log(1e-3));
-  EXPECT_LT(mean_of(s, SurfaceQuantity::normals, 3), 0.5);
-  EXPECT_LT(mean_of(s, SurfaceQuantity::slope, 0), 1);
+  EXPECT_LT(mean_value(s, SurfaceQuantity::roughness, 3), std::log(1e-3));
+  EXPECT_LT(mean_value(s, SurfaceQuantity::normals, 3), 0.5);
+  EXPECT_LT(mean_value(s, SurfaceQuantity::slope, 0), 1);
   ASSERT_EQ(s.remarks.size(), 1u);  // 24 edges are .9 of the radius
   EXPECT_EQ(s.find(SurfaceQuantity::roughness, 24), nullptr);
 }
@@ -51,7 +51,7 @@ TEST(SurfaceStatistics, RoughnessOfAWaveIsItsAmplitude) {
     if (std::min({p.x, p.y, 100 - p.x, 100 - p.y}) < 14) continue;
     rms.push_back(12 * s.edge * std::exp(s.find(SurfaceQuantity::roughness, 12)->values[i]));
   }
-  EXPECT_NEAR(mean_of(rms), amplitude * through / std::sqrt(2.0), 0.03 * amplitude);
+  EXPECT_NEAR(mean_value(rms), amplitude * through / std::sqrt(2.0), 0.03 * amplitude);
   // A sheet holds no volume, so that slopes have no vertical; discs of 24 edges are as large as the sheet.
   EXPECT_EQ(s.find(SurfaceQuantity::slope, 0), nullptr);
   EXPECT_EQ(s.remarks.size(), 2u);
@@ -64,12 +64,12 @@ TEST(SurfaceStatistics, TwiceTheHeightIsTwiceAsRough) {
              two = surface_statistics(rough_sphere([&](const Vec3d&p) { return 0.008 * waves(p); }),
                                       few_places());
   for (const double radius : {3.0, 6.0, 12.0}) {
-    EXPECT_NEAR(
-        mean_of(two, SurfaceQuantity::roughness, radius) - mean_of(one, SurfaceQuantity::roughness, radius),
-        std::log(2.0), 0.05);
-    EXPECT_NEAR(mean_of(one, SurfaceQuantity::skewness, radius), 0, 0.06);
+    EXPECT_NEAR(mean_value(two, SurfaceQuantity::roughness, radius) -
+                    mean_value(one, SurfaceQuantity::roughness, radius),
+                std::log(2.0), 0.05);
+    EXPECT_NEAR(mean_value(one, SurfaceQuantity::skewness, radius), 0, 0.06);
   }
-  EXPECT_GT(mean_of(two, SurfaceQuantity::slope, 0), 1.7 * mean_of(one, SurfaceQuantity::slope, 0));
+  EXPECT_GT(mean_value(two, SurfaceQuantity::slope, 0), 1.7 * mean_value(one, SurfaceQuantity::slope, 0));
   EXPECT_NEAR(two.lags[3].difference / one.lags[3].difference, 2, 0.1);
 }
 
@@ -80,9 +80,9 @@ TEST(SurfaceStatistics, BumpsAreSkewedUpAndPitsDown) {
              down = surface_statistics(rough_sphere([&](const Vec3d&p) { return -0.03 * bumps(p); }),
                                        few_places());
   for (const double radius : {6.0, 12.0}) {
-    EXPECT_GT(mean_of(up, SurfaceQuantity::skewness, radius), 0.4) << radius;
-    EXPECT_LT(mean_of(down, SurfaceQuantity::skewness, radius), -0.4) << radius;
-    EXPECT_GT(mean_of(up, SurfaceQuantity::kurtosis, radius), 0.5);
+    EXPECT_GT(mean_value(up, SurfaceQuantity::skewness, radius), 0.4) << radius;
+    EXPECT_LT(mean_value(down, SurfaceQuantity::skewness, radius), -0.4) << radius;
+    EXPECT_GT(mean_value(up, SurfaceQuantity::kurtosis, radius), 0.5);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(SurfaceStatistics, SizeAndPlaceDoNotMatter) {
   const auto large = surface_statistics(mesh, few_places());
   EXPECT_NEAR(large.edge, 1024 * one.edge, 1e-9 * large.edge);
   for (std::size_t s = 0; s < one.local.size(); ++s) {
-    EXPECT_NEAR(mean_of(large.local[s].values), mean_of(one.local[s].values), 1e-6);
+    EXPECT_NEAR(mean_value(large.local[s].values), mean_value(one.local[s].values), 1e-6);
   }
 }
 
@@ -120,8 +120,8 @@ TEST(SurfaceStatistics, HardlyDependOnTheTriangulation) {
   options.points = 10240;
   const auto a = surface_statistics(rough_sphere(height), options), b = surface_statistics(fine, options);
   for (const double radius : {3.0, 6.0, 12.0}) {
-    EXPECT_NEAR(mean_of(a, SurfaceQuantity::roughness, radius),
-                mean_of(b, SurfaceQuantity::roughness, radius), 0.05);
+    EXPECT_NEAR(mean_value(a, SurfaceQuantity::roughness, radius),
+                mean_value(b, SurfaceQuantity::roughness, radius), 0.05);
   }
 }
 

@@ -25,7 +25,7 @@ TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
   constexpr int kSeeds = 4;
   double distance = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const GreyImage exemplar = testing::realisation_of(truth, static_cast<std::uint64_t>(seed));
+    const GreyImage exemplar = testing::draw_realisation(truth, static_cast<std::uint64_t>(seed));
     const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", {});
     EXPECT_LE(fit.lobes.size(), 80u);
     EXPECT_LE(fit.pursuit.relative_gap, 1e-2);
@@ -40,13 +40,13 @@ TEST(GaborFit, ThePursuitDoesNotGoRoundInCircles) {
   GaborFitOptions options;
   options.penalty_ratio = 0.03;
   const GaborFit fit =
-      fit_gabor_lobes(testing::realisation_of(testing::four_lobe_spectrum(), 3), "exemplar", options);
+      fit_gabor_lobes(testing::draw_realisation(testing::four_lobe_spectrum(), 3), "exemplar", options);
   EXPECT_TRUE(fit.pursuit.reached);
   EXPECT_LE(fit.pursuit.iterations, 100);
 }
 
 TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
-  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 9);
+  const GreyImage exemplar = testing::draw_realisation(testing::four_lobe_spectrum(), 9);
   GaborFitOptions options;
   options.max_lobes = 40;
   const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", options);
@@ -58,7 +58,7 @@ TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
 
 // An exemplar in other units and with another mean gives the same lobes with scaled variances.
 TEST(GaborFit, ScalesWithTheExemplar) {
-  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 10);
+  const GreyImage exemplar = testing::draw_realisation(testing::four_lobe_spectrum(), 10);
   GreyImage other = exemplar;
   for (double& v : other.values) v = 1e6 + 1024.0 * v;
   const GaborFit a = fit_gabor_lobes(exemplar, "a", {});
@@ -71,7 +71,7 @@ TEST(GaborFit, ScalesWithTheExemplar) {
 }
 
 TEST(GaborFit, ThreadsDoNotChangeABit) {
-  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 12);
+  const GreyImage exemplar = testing::draw_realisation(testing::four_lobe_spectrum(), 12);
   const auto fit_with = [&](int threads) {
     const ThreadLimit limit(threads);
     return fit_gabor_lobes(exemplar, "exemplar", {}).fitted.power;
@@ -94,7 +94,7 @@ TEST(GaborFit, SurvivesDegenerateTextures) {
     images[2].values[i] = static_cast<double>((i % 33 + i / 33) % 2);
   }
   // Twenty tiles side by side: a spectrum of lines with nothing between them.
-  const GreyImage tile = testing::realisation_of(testing::four_lobe_spectrum(), 4).part(0, 0, 32, 32);
+  const GreyImage tile = testing::draw_realisation(testing::four_lobe_spectrum(), 4).part(0, 0, 32, 32);
   GreyImage strip{640, 32, {}};
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 640; ++x) strip.values.push_back(tile.at(x % 32, y));

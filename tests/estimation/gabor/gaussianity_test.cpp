@@ -15,7 +15,7 @@ TEST(Gaussianity, OfAGaussianTextureIsPlausible) {
   const PowerSpectrum spectrum = testing::four_lobe_spectrum();
   int rejected = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    const Gaussianity g = test_gaussianity(testing::realisation_of(spectrum, seed), 1);
+    const Gaussianity g = test_gaussianity(testing::draw_realisation(spectrum, seed), 1);
     EXPECT_TRUE(g.plausible());
     rejected += g.p_value <= 0.05;
   }
@@ -23,7 +23,7 @@ TEST(Gaussianity, OfAGaussianTextureIsPlausible) {
 }
 
 TEST(Gaussianity, StopsWhenAsked) {
-  const GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 1);
+  const GreyImage image = testing::draw_realisation(testing::four_lobe_spectrum(), 1);
   for (const int last : {1, 3}) {
     int asked = 0;
     const auto stop = [&](double, std::string_view) { return ++asked < last; };
@@ -33,7 +33,7 @@ TEST(Gaussianity, StopsWhenAsked) {
 }
 
 TEST(Gaussianity, SeesALopsidedMarginal) {
-  GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 1);
+  GreyImage image = testing::draw_realisation(testing::four_lobe_spectrum(), 1);
   for (double& v : image.values) v = std::exp(v);
   const Gaussianity g = test_gaussianity(image, 1);
   EXPECT_GT(g.skewness, 1.0);
@@ -44,7 +44,7 @@ TEST(Gaussianity, SeesALopsidedMarginal) {
 
 // A Gaussian texture that is strong on the left and weak on the right.
 TEST(Gaussianity, SeesDetailThatSitsInPlaces) {
-  GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 2);
+  GreyImage image = testing::draw_realisation(testing::four_lobe_spectrum(), 2);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       image.values[static_cast<std::size_t>(y * image.width + x)] *= x < 64 ? 1.0 : 0.2;
@@ -81,7 +81,7 @@ GreyImage large_texture(std::uint64_t seed) {
   for (int ty = 0; ty < kSide / kPiece; ++ty) {
     for (int tx = 0; tx < kSide / kPiece; ++tx) {
       const GreyImage piece =
-          testing::realisation_of(spectrum, 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
+          testing::draw_realisation(spectrum, 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
       for (int y = 0; y < kPiece; ++y) {
         for (int x = 0; x < kPiece; ++x)
           image.values[static_cast<std::size_t>((ty * kPiece + y) * kSide + tx * kPiece + x)] =

@@ -16,12 +16,12 @@
 namespace astrolith::testing {
 
 // The spectrum of lobes on a grid of width x height.
-inline PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
+inline PowerSpectrum lobe_sum(const std::vector<SpectralLobe>& lobes, int width, int height) {
   std::vector<GaborLobe> layer;
   for (const SpectralLobe& lobe : lobes) {
     layer.push_back({lobe.bandwidth, lobe.x, lobe.y, lobe_variance(lobe, width, height)});
   }
-  return spectrum_of(layer, width, height);
+  return layer_spectrum(layer, width, height);
 }
 
 // weight times a symmetric pair of Gaussians at +-(cx, cy) with deviations sx and sy along axes turned by
@@ -127,7 +127,7 @@ inline std::vector<NamedSpectrum> known_spectra() {
 }
 
 // White Gaussian noise filtered by the square root of the spectrum.
-inline GreyImage realisation_of(const PowerSpectrum& spectrum, std::uint64_t seed) {
+inline GreyImage draw_realisation(const PowerSpectrum& spectrum, std::uint64_t seed) {
   CounterRandom random(seed);
   GreyImage image{spectrum.width, spectrum.height, std::vector<double>(spectrum.power.size())};
   for (double& v : image.values) v = random.normal();
@@ -160,7 +160,7 @@ inline CutTexture unscaled_cut(const std::function<double(double fx, double fy)>
           x + y == 0 ? 0.0 : power(signed_frequency(x, large) / 4.0, signed_frequency(y, large) / 4.0));
     }
   }
-  const GreyImage texture = realisation_of(whole, seed);
+  const GreyImage texture = draw_realisation(whole, seed);
   CutTexture cut{{n, n, {}}, {n, n, {}}};
   for (int y = 0; y < n; ++y) {
     for (int x = 0; x < n; ++x) {

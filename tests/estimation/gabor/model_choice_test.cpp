@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-GreyImage gaussian_texture() { return testing::realisation_of(testing::broad_spectrum(), 6); }
+GreyImage gaussian_texture() { return testing::draw_realisation(testing::broad_spectrum(), 6); }
 
 // Bright grains on a dark ground: two grey values, and edges, which no noise has.
 GreyImage grains() {

@@ -57,8 +57,8 @@ TEST_F(PhotoFitTest, ColoursComeApartIntoTheLayersThatMadeThem) {
   EXPECT_FALSE(photo.weak());
   EXPECT_LT(photo.spectrum_residual(), photo.weak_above());
   EXPECT_EQ(photo.lobes(), first.fit.lobes.size() + photo.channels[1].fit.lobes.size());
-  EXPECT_GT(layer_of(first, true).height_rms, 0.0);
-  EXPECT_EQ(layer_of(photo.channels[1], false).height_rms, 0.0);
+  EXPECT_GT(make_gabor_layer(first, true).height_rms, 0.0);
+  EXPECT_EQ(make_gabor_layer(photo.channels[1], false).height_rms, 0.0);
 }
 
 // A photo above the largest side is cut into segments, and waves of twice their side are lost. So is a slope

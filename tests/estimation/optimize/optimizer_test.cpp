@@ -42,7 +42,7 @@ double rastrigin(std::span<const double> x) {
   return sum;
 }
 
-OptimizeOptions options_of(Algorithm algorithm, std::int64_t evaluations) {
+OptimizeOptions make_options(Algorithm algorithm, std::int64_t evaluations) {
   OptimizeOptions options;
   options.algorithm = algorithm;
   options.max_evaluations = evaluations;
@@ -58,7 +58,7 @@ TEST_P(EveryOptimizer, FindsTheSphere) {
   // The two evolutionary algorithms explore much longer before they home in.
   const bool evolutionary = GetParam() == Algorithm::esch || GetParam() == Algorithm::isres;
   const double bound = evolutionary ? 0.1 : 1e-6;
-  const OptimizeResult result = minimize(sphere, kBox, options_of(GetParam(), 6000));
+  const OptimizeResult result = minimize(sphere, kBox, make_options(GetParam(), 6000));
   EXPECT_LT(result.value, bound);
   EXPECT_EQ(result.value, sphere(result.x));
 }
@@ -71,7 +71,7 @@ TEST_P(EveryOptimizer, StaysInsideTheBoundsAndTheBudget) {
     for (std::size_t d = 0; d < x.size(); ++d) outside += x[d] < box.lower[d] || x[d] > box.upper[d];
     return -sphere(x);  // pushes into the corners
   };
-  const OptimizeResult result = minimize(objective, box, options_of(GetParam(), 500));
+  const OptimizeResult result = minimize(objective, box, make_options(GetParam(), 500));
   EXPECT_EQ(outside, 0);
   EXPECT_EQ(result.evaluations, calls);
   EXPECT_LE(result.evaluations, 500);
@@ -79,7 +79,7 @@ TEST_P(EveryOptimizer, StaysInsideTheBoundsAndTheBudget) {
 }
 
 TEST_P(EveryOptimizer, SameSeedSameBytesForAnyThreadCount) {
-  OptimizeOptions options = options_of(GetParam(), 700);
+  OptimizeOptions options = make_options(GetParam(), 700);
   options.seed = 12345678901ull;
   OptimizeResult one, again;
   {
@@ -104,7 +104,7 @@ TEST_P(EveryOptimizer, SameSeedSameBytesForAnyThreadCount) {
 }
 
 TEST_P(EveryOptimizer, HistoryFalls) {
-  const OptimizeResult result = minimize(rosenbrock, kBox, options_of(GetParam(), 1000));
+  const OptimizeResult result = minimize(rosenbrock, kBox, make_options(GetParam(), 1000));
   ASSERT_GE(result.history.size(), 2u);
   for (std::size_t i = 1; i < result.history.size(); ++i) {
     ASSERT_LE(result.history[i], result.history[i - 1]);
@@ -118,7 +118,7 @@ TEST_P(EveryOptimizer, ValuesThatAreNotFiniteAreTheWorst) {
     if (x[1] > 0) return -std::numeric_limits<double>::infinity();
     return sphere(x);
   };
-  OptimizeOptions options = options_of(GetParam(), 3000);
+  OptimizeOptions options = make_options(GetParam(), 3000);
   options.start = {1, -1, 0, 0};
   const OptimizeResult result = minimize(objective, kBox, options);
   EXPECT_TRUE(std::isfinite(result.value));
@@ -126,11 +126,11 @@ TEST_P(EveryOptimizer, ValuesThatAreNotFiniteAreTheWorst) {
   EXPECT_GE(result.x[0], 0);
   EXPECT_LE(result.x[1], 0);
   const auto hopeless = [](std::span<const double>) { return std::nan(""); };
-  EXPECT_EQ(minimize(hopeless, kBox, options_of(GetParam(), 100)).x.size(), 4u);
+  EXPECT_EQ(minimize(hopeless, kBox, make_options(GetParam(), 100)).x.size(), 4u);
 }
 
 TEST_P(EveryOptimizer, StopsWhenAskedWithTheBestSoFar) {
-  OptimizeOptions options = options_of(GetParam(), 100000);
+  OptimizeOptions options = make_options(GetParam(), 100000);
   options.population = 20;
   int reports = 0;
   const auto result =
@@ -142,14 +142,14 @@ TEST_P(EveryOptimizer, StopsWhenAskedWithTheBestSoFar) {
 
 TEST_P(EveryOptimizer, RethrowsWhatTheObjectiveThrows) {
   const auto objective = [](std::span<const double>) -> double { throw std::domain_error("no such shape"); };
-  EXPECT_THROW(minimize(objective, kBox, options_of(GetParam(), 100)), std::domain_error);
+  EXPECT_THROW(minimize(objective, kBox, make_options(GetParam(), 100)), std::domain_error);
 }
 
 // The median over 20 seeds. A broken update rule does not reach the bounds that the tests set for it.
 double median_value(Algorithm algorithm, double (*f)(std::span<const double>), std::int64_t evaluations) {
   std::vector<double> values;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    OptimizeOptions options = options_of(algorithm, evaluations);
+    OptimizeOptions options = make_options(algorithm, evaluations);
     options.seed = seed;
     values.push_back(minimize(f, kBox, options).value);
   }
@@ -165,12 +165,12 @@ TEST(ParticleSwarm, RosenbrockAndRastrigin) {
 TEST(Nlopt, RosenbrockAndRastrigin) {
   EXPECT_LT(median_value(Algorithm::crs2, rosenbrock, 20000), 1e-6);
   EXPECT_LT(median_value(Algorithm::isres, rastrigin, 20000), 3);
-  EXPECT_LT(minimize(rosenbrock, kBox, options_of(Algorithm::sbplx, 20000)).value, 0.01);
+  EXPECT_LT(minimize(rosenbrock, kBox, make_options(Algorithm::sbplx, 20000)).value, 0.01);
 }
 
 TEST(Optimizer, TheStartIsTried) {
   for (const Algorithm algorithm : {Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::sbplx}) {
-    OptimizeOptions options = options_of(algorithm, 300);
+    OptimizeOptions options = make_options(algorithm, 300);
     options.start = kOptimum;
     EXPECT_EQ(minimize(rastrigin, kBox, options).value, 0) << static_cast<int>(algorithm);
   }
@@ -186,7 +186,7 @@ TEST(Optimizer, WrongBoundsAndOptions) {
   EXPECT_THROW(minimize(sphere, {{0, 0}, {1}}), InputError);
   EXPECT_THROW(minimize(sphere, {{1}, {0}}), InputError);
   EXPECT_THROW(minimize(sphere, {{0}, {std::nan("")}}), InputError);
-  EXPECT_THROW(minimize(sphere, kBox, options_of(Algorithm::pso, 0)), InputError);
+  EXPECT_THROW(minimize(sphere, kBox, make_options(Algorithm::pso, 0)), InputError);
   OptimizeOptions options;
   options.start = {1};
   EXPECT_THROW(minimize(sphere, kBox, options), InputError);

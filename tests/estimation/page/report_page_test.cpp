@@ -14,7 +14,7 @@ TEST(ReportPage, HoldsTextEscapedTablesAndPictures) {
   std::ofstream(folder / "fit.png") << "Man!";  // the page does not look into a picture
   write_report_page({"<b>&\"", "One sentence.", {}, {{{"a", "b"}, {{"1", "2"}}}}, {{"fit.png", "the fit"}}},
                     file);
-  const std::string html = testing::text_of(file);
+  const std::string html = testing::read_text(file);
   EXPECT_NE(html.find("<h1>&lt;b&gt;&amp;&quot;</h1>"), std::string::npos);
   EXPECT_NE(html.find("<tr><th>a</th><th>b</th></tr>\n<tr><td>1</td><td>2</td></tr>"), std::string::npos);
   EXPECT_NE(html.find("<img src=\"data:image/png;base64,TWFuIQ==\" alt=\"the fit\">"), std::string::npos);

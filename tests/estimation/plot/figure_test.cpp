@@ -19,7 +19,7 @@ TEST(Figure, WritesPngOfThePageSize) {
   Figure page(144.0, 72.0);
   page.fill({0.0, 0.0, 10.0, 10.0}, {1.0, 0.0, 0.0});
   page.write_png(folder / "page.png", 100.0);
-  const std::string png = testing::text_of(folder / "page.png");
+  const std::string png = testing::read_text(folder / "page.png");
   EXPECT_EQ(png_number(png, 16), 200);
   EXPECT_EQ(png_number(png, 20), 100);
 }
@@ -29,7 +29,7 @@ TEST(Figure, DrawsTextThatIsNotUtf8) {
   Figure page(100.0, 50.0);
   page.text(5.0, 20.0, "gr\xfcn.png", 10.0);
   EXPECT_NO_THROW(page.write_svg(folder / "page.svg"));
-  EXPECT_NE(testing::text_of(folder / "page.svg").find("</svg>"), std::string::npos);
+  EXPECT_NE(testing::read_text(folder / "page.svg").find("</svg>"), std::string::npos);
 }
 
 TEST(Figure, RefusesFilesThatCannotBeWritten) {

@@ -64,7 +64,7 @@ std::vector<int> chart_grid(const TextureAtlas& atlas, int per_texel) {
         if (least <= 1e-3) continue;
         int& at =
             grid[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
-        at = at == -1 ? static_cast<int>(atlas.chart_of[f]) : -2;
+        at = at == -1 ? static_cast<int>(atlas.triangle_chart[f]) : -2;
       }
     }
   }
@@ -81,7 +81,7 @@ void expect_good_atlas(const TriangleMesh& mesh, int side) {
   ASSERT_EQ(atlas.coordinates.triangles.size(), mesh.triangles.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k)
-      ASSERT_EQ(atlas.coordinates.vertex_of[atlas.coordinates.triangles[f][k]], mesh.triangles[f][k]);
+      ASSERT_EQ(atlas.coordinates.mesh_vertex[atlas.coordinates.triangles[f][k]], mesh.triangles[f][k]);
   }
   constexpr int kPerTexel = 2, kApart = 2 * kChartPadding * kPerTexel;
   const std::vector<int> grid = chart_grid(atlas, kPerTexel);

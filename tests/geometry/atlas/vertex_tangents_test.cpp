@@ -9,7 +9,7 @@ namespace {
 
 using namespace testing;
 
-Vec3d direction_of(const VertexTangent& t) { return {double{t[0]}, double{t[1]}, double{t[2]}}; }
+Vec3d direction(const VertexTangent& t) { return {double{t[0]}, double{t[1]}, double{t[2]}}; }
 
 // A square whose image is turned by a quarter: u runs along +y, and the image's top is at -x.
 TEST(VertexTangents, RunAlongUOfASquare) {
@@ -30,8 +30,8 @@ TEST(VertexTangents, OfAChartAreUnitInThePlaneOfTheNormal) {
   const std::vector<VertexTangent> tangents = vertex_tangents(mesh, made);
   ASSERT_EQ(tangents.size(), made.uv.size());
   for (std::size_t w = 0; w < tangents.size(); ++w) {
-    ASSERT_NEAR(norm(direction_of(tangents[w])), 1.0, 1e-6);
-    ASSERT_NEAR(dot(direction_of(tangents[w]), mesh.normals[made.vertex_of[w]]), 0.0, 1e-6);
+    ASSERT_NEAR(norm(direction(tangents[w])), 1.0, 1e-6);
+    ASSERT_NEAR(dot(direction(tangents[w]), mesh.normals[made.mesh_vertex[w]]), 0.0, 1e-6);
     ASSERT_EQ(tangents[w][3], 1.0f);
   }
 }

@@ -17,7 +17,7 @@ class MeshErrors : public ::testing::Test {
  protected:
   // The message of the InputError that reading the file gives; empty when it gives none.
   std::string complaint(const std::filesystem::path& file) {
-    return testing::refusal_of([&] { read_mesh(file); });
+    return testing::refusal_text([&] { read_mesh(file); });
   }
   // Expects that a file of this content gives a message with the file's name and the fragment.
   void expect(const std::string& name, const std::string& content, const std::string& fragment) {

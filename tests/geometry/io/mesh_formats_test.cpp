@@ -137,7 +137,7 @@ TEST_F(MeshFormats, StlAsciiIsWelded) {
 // Some programs start the 80 bytes of the binary form with "solid", the first word of the ascii form.
 TEST_F(MeshFormats, StlBinaryThatCallsItselfSolid) {
   write_mesh(icosphere(1), folder / "a.stl", {});
-  std::string bytes = text_of(folder / "a.stl");
+  std::string bytes = read_text(folder / "a.stl");
   bytes.replace(0, 11, "solid facet");
   EXPECT_EQ(read("b.stl", bytes).triangles.size(), 80u);
 }

@@ -13,7 +13,7 @@ using namespace testing;
 class MeshFuzz : public ::testing::TestWithParam<const char*> {
  protected:
   // A valid file, with which the fuzzer of the format begins too.
-  std::string valid_file() { return text_of(std::filesystem::path(ASTROLITH_FUZZ_SEEDS) / GetParam()); }
+  std::string valid_file() { return read_text(std::filesystem::path(ASTROLITH_FUZZ_SEEDS) / GetParam()); }
   // True when the file was read.
   bool survives(const std::string& content) {
     const std::filesystem::path file = folder.write(std::filesystem::path(GetParam()).filename(), content);

@@ -67,7 +67,7 @@ TEST(MeshIo, FilesStateUnitAndFrame) {
   const ScratchFolder folder;
   for (const char* name : {"a.ply", "a.obj", "a.stl", "a.glb"}) {
     write_mesh(icosphere(1, 1), folder / name, kInfo);
-    const std::string content = text_of(folder / name);
+    const std::string content = read_text(folder / name);
     EXPECT_NE(content.find("km"), content.npos) << name;
     EXPECT_NE(content.find("+z spin pole"), content.npos) << name;
   }
@@ -79,7 +79,7 @@ TEST(MeshIo, SameMeshSameBytes) {
     const std::string a = std::string("a") + extension, b = std::string("b") + extension;
     write_mesh(float_body(true), folder / a, kInfo);
     write_mesh(float_body(true), folder / b, kInfo);
-    EXPECT_TRUE(text_of(folder / a) == text_of(folder / b));
+    EXPECT_TRUE(read_text(folder / a) == read_text(folder / b));
   }
 }
 

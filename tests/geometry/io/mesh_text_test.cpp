@@ -48,7 +48,7 @@ class MeshText : public ::testing::Test {
     EXPECT_TRUE(mesh.triangles.size() == 4 && analyze_topology(mesh).closed) << content;
   }
   void expect_refused(const std::string& name, const std::string& content, const std::string& words) {
-    const std::string message = refusal_of([&] { read_mesh(folder_.write(name, content)); });
+    const std::string message = refusal_text([&] { read_mesh(folder_.write(name, content)); });
     EXPECT_NE(message.find(words), message.npos) << message;
   }
   ScratchFolder folder_;

@@ -82,7 +82,7 @@ TEST(PlyStreamReader, DamagedAndOtherFilesAreRefused) {
   const ScratchFolder folder;
   TriangleMesh mesh = torus(2, 0.7);
   write_mesh(mesh, folder / "a.ply", {});
-  const std::string good = text_of(folder / "a.ply");
+  const std::string good = read_text(folder / "a.ply");
   const auto refuse = [&](const std::string& bytes) {
     const auto file = folder.write("bad.ply", bytes);
     EXPECT_THROW(
@@ -168,8 +168,8 @@ TEST(PlyStreamWriter, StreamedColoursAreThoseOfWriteMesh) {
   PlyStreamWriter writer(folder / "streamed.ply", info, {}, paint);
   stream(mesh, 7, writer);
   writer.finish();
-  const std::string bytes = text_of(folder / "whole.ply");
-  EXPECT_TRUE(text_of(folder / "streamed.ply") == bytes);
+  const std::string bytes = read_text(folder / "whole.ply");
+  EXPECT_TRUE(read_text(folder / "streamed.ply") == bytes);
   EXPECT_NE(bytes.find("property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"),
             std::string::npos);
   const std::size_t first = bytes.find("end_header\n") + 11 + 6 * sizeof(float);
@@ -190,7 +190,7 @@ TEST(PlyStreamWriter, BytesDoNotDependOnPortionsAndEqualThoseOfWriteMesh) {
     writer.finish();
     EXPECT_EQ(writer.num_vertices(), mesh.vertices.size());
     EXPECT_EQ(writer.num_triangles(), mesh.triangles.size());
-    EXPECT_TRUE(text_of(folder / "streamed.ply") == text_of(folder / "whole.ply"));
+    EXPECT_TRUE(read_text(folder / "streamed.ply") == read_text(folder / "whole.ply"));
   }
 }
 

@@ -28,7 +28,7 @@ class Tables : public ::testing::Test {
     EXPECT_LT(norm(read[1] - scale * Vec3d{0, 4, 0}), 1e-12 * scale) << text;
   }
   void expect_refused(const std::string& text, const std::string& words, const std::string& name = "p.csv") {
-    const std::string message = testing::refusal_of([&] { points(text, "km", name); });
+    const std::string message = testing::refusal_text([&] { points(text, "km", name); });
     EXPECT_NE(message.find(words), message.npos) << message;
   }
   testing::ScratchFolder folder_;
@@ -132,7 +132,7 @@ TEST_F(Tables, RadiiOnAGridBecomeABody) {
 
 TEST_F(Tables, GridsThatAreNone) {
   const auto refusal = [&](const std::string& text) {
-    return testing::refusal_of([&] { read_mesh(folder_.write("a.tab", text)); });
+    return testing::refusal_text([&] { read_mesh(folder_.write("a.tab", text)); });
   };
   const std::string half = grid_table({.first = 0, .header = "lat lon radius\n"});
   EXPECT_NE(refusal(half).find("no regular grid from pole to pole"), std::string::npos) << refusal(half);
@@ -161,9 +161,9 @@ TEST_F(Tables, LabelsBeforeATableArePassedOver) {
   EXPECT_EQ(points(kLabel + "1,2,3\n").points.size(), 1u);
   std::string detached = kLabel;
   detached.replace(detached.find("12"), 2, "\"EROS.TAB\"");
-  const std::string message = testing::refusal_of([&] { read_mesh(folder_.write("a.lbl", detached)); });
+  const std::string message = testing::refusal_text([&] { read_mesh(folder_.write("a.lbl", detached)); });
   EXPECT_NE(message.find("is a PDS3 label without its data; give 'EROS.TAB'"), message.npos) << message;
-  const std::string late = testing::refusal_of([&] { points(kLabel + "1,2\n"); });
+  const std::string late = testing::refusal_text([&] { points(kLabel + "1,2\n"); });
   EXPECT_NE(late.find("line 8: has 2 columns"), late.npos) << late;
 }
 

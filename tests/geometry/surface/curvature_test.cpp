@@ -151,7 +151,7 @@ TEST(Curvature, RepeatedAndDegenerateTriangles) {
   EXPECT_THROW(vertex_curvature({{{0, 0, 0}}, {{0, 1, 2}}, {}}), InputError);
 }
 
-double mean_of(const std::vector<double>& v) {
+double mean_value(const std::vector<double>& v) {
   double sum = 0;
   for (const double x : v) sum += x;
   return sum / static_cast<double>(v.size());
@@ -200,7 +200,7 @@ TEST(SampleCurvature, OpenMeshesSayWhatIsLeftOut) {
   const TriangleMesh mesh = open_cap(4);
   const SampleCurvature c = sample_curvature(mesh, sample_poisson_disk(mesh, 500, 1), 0.1);
   EXPECT_GT(c.vertices_left_out, 10);
-  EXPECT_NEAR(mean_of(c.gaussian), 1, 0.02);
+  EXPECT_NEAR(mean_value(c.gaussian), 1, 0.02);
   const TriangleMesh lone{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
   const SampleCurvature none = sample_curvature(lone, sample_surface(lone, 10, 1), 0.1);
   EXPECT_EQ(none.undefined, 10);

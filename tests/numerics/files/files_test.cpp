@@ -16,20 +16,20 @@
 namespace astrolith {
 namespace {
 
-using testing::text_of;
+using testing::read_text;
 
 TEST(AppendLine, MakesAndExtendsTheFile) {
   const testing::ScratchFolder folder;
   append_line(folder / "m.jsonl", "one");
   append_line(folder / "m.jsonl", "two");
-  EXPECT_EQ(text_of(folder / "m.jsonl"), "one\ntwo\n");
+  EXPECT_EQ(read_text(folder / "m.jsonl"), "one\ntwo\n");
 }
 
 TEST(AppendLine, LeavesALineThatWasCutShortAlone) {
   const testing::ScratchFolder folder;
   std::ofstream(folder / "m.jsonl") << "one\n{\"mem";
   append_line(folder / "m.jsonl", "two");
-  EXPECT_EQ(text_of(folder / "m.jsonl"), "one\n{\"mem\ntwo\n");
+  EXPECT_EQ(read_text(folder / "m.jsonl"), "one\n{\"mem\ntwo\n");
 }
 
 TEST(AppendLine, KeepsTheLinesOfTwoProcessesWhole) {
@@ -56,7 +56,7 @@ TEST(NpyFile, HasTheHeaderAndTheBytes) {
   const auto file = folder / "a.npy";
   const std::vector<double> values{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   write_npy(values, std::vector<int>{2, 3}, file);
-  const std::string bytes = text_of(file);
+  const std::string bytes = read_text(file);
   EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
   const std::size_t start = bytes.size() - 6 * sizeof(double);
   EXPECT_EQ(start % 64, 0u);
@@ -70,7 +70,7 @@ TEST(NpyFile, OneAxisAndWrongShapes) {
   const testing::ScratchFolder folder;
   const std::vector<double> values{1.0, 2.0};
   write_npy(values, std::vector<int>{2}, folder / "a.npy");
-  EXPECT_NE(text_of(folder / "a.npy").find("'shape': (2, ), }"), std::string::npos);
+  EXPECT_NE(read_text(folder / "a.npy").find("'shape': (2, ), }"), std::string::npos);
   EXPECT_THROW(write_npy(values, std::vector<int>{2, 2}, folder / "b.npy"), WorkError);
   EXPECT_FALSE(std::filesystem::exists(folder / "b.npy"));
 }
@@ -114,7 +114,7 @@ std::string packed(const testing::ScratchFolder& folder, const std::string& text
   OutputFile file(folder / "a.zst");
   file.write(text.data(), text.size());
   file.commit();
-  return text_of(folder / "a.zst");
+  return read_text(folder / "a.zst");
 }
 
 TEST(ZstdStream, ContentComesBack) {
@@ -137,7 +137,7 @@ TEST(ZstdStream, SeekingActsOnTheContent) {
   file.write("head", 4);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.zst"));
   file.commit();
-  EXPECT_EQ(unpack_zstd(text_of(folder / "a.zst"), 100), "head tail");
+  EXPECT_EQ(unpack_zstd(read_text(folder / "a.zst"), 100), "head tail");
 }
 
 // 10 MB of zeros take some hundred bytes.

@@ -45,7 +45,7 @@ TEST_F(OutputFileTest, AppearsWholeAtCommit) {
   file.write("hello", 5);
   EXPECT_FALSE(fs::exists(folder / "a.txt"));
   file.commit();
-  EXPECT_EQ(testing::text_of(folder / "a.txt"), "hello");
+  EXPECT_EQ(testing::read_text(folder / "a.txt"), "hello");
 }
 
 TEST_F(OutputFileTest, LeavesNothingWithoutCommit) {
@@ -127,7 +127,7 @@ TEST_F(OutputFileTest, AKilledProgramLeavesNoPartWhereItReplacesAFile) {
           for (;;) write_file(target);
         },
         std::chrono::microseconds(500 + 311 * moment));
-    const std::string after = testing::text_of(target);
+    const std::string after = testing::read_text(target);
     EXPECT_TRUE(after == before || after == kContent);
     for (const std::string& name : names_in(folder)) {
       EXPECT_TRUE(name == "file" || fs::file_size(folder / name) == kContent.size()) << name << " was left";
@@ -143,14 +143,14 @@ TEST_F(OutputFileTest, ReplacesAFileWholeOrNotAtAll) {
     {
       OutputFile file(target, start);
       file.write("new", 3);
-      EXPECT_EQ(testing::text_of(target), kContent);
+      EXPECT_EQ(testing::read_text(target), kContent);
       file.commit();
     }
-    EXPECT_EQ(testing::text_of(target), "new");
-    EXPECT_EQ(testing::text_of(other_name), kContent);
+    EXPECT_EQ(testing::read_text(target), "new");
+    EXPECT_EQ(testing::read_text(other_name), kContent);
     EXPECT_EQ(names_in(folder).size(), 2u);
     { OutputFile(target, start).write("never", 5); }
-    EXPECT_EQ(testing::text_of(target), "new");
+    EXPECT_EQ(testing::read_text(target), "new");
     EXPECT_EQ(names_in(folder).size(), 2u);
     fs::remove(other_name);
     fs::remove(target);
@@ -196,7 +196,7 @@ TEST_F(OutputFileTest, ALinkIsWrittenThrough) {
   for (const std::string content : {"first", "second"}) {
     astrolith::write_file(folder / "link_to_link", content);
     EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link_to_link"));
-    EXPECT_EQ(testing::text_of(folder / "elsewhere" / "file"), content);
+    EXPECT_EQ(testing::read_text(folder / "elsewhere" / "file"), content);
   }
   fs::create_symlink("ring", folder / "ring");
   EXPECT_THROW(OutputFile(folder / "ring"), InputError);
@@ -215,7 +215,7 @@ TEST_F(OutputFileTest, AppendsThePartOfAnotherFile) {
   file.seek(0);
   file.write("BEFORE", 6);
   file.commit();
-  EXPECT_EQ(testing::text_of(folder / "joined").substr(0, text.size() + 10),
+  EXPECT_EQ(testing::read_text(folder / "joined").substr(0, text.size() + 10),
             "BEFORE" + text.substr(1) + "after");
 }
 
@@ -232,7 +232,7 @@ TEST_F(OutputFileTest, AReadOnlyFileIsNotReplaced) {
   astrolith::write_file(folder / "kept", "kept");
   fs::permissions(folder / "kept", fs::perms(0444));
   EXPECT_THROW(OutputFile(folder / "kept"), InputError);
-  EXPECT_EQ(testing::text_of(folder / "kept"), "kept");
+  EXPECT_EQ(testing::read_text(folder / "kept"), "kept");
 }
 
 TEST_F(OutputFileTest, TheNameMayBeAsLongAsTheSystemAllows) {
@@ -258,7 +258,7 @@ TEST_F(OutputFileTest, ADuplicateDescriptorWritesTheSameFile) {
   ASSERT_EQ(::write(descriptor, "two", 3), 3);
   ::close(descriptor);
   file.commit();
-  EXPECT_EQ(testing::text_of(folder / "file"), "one two");
+  EXPECT_EQ(testing::read_text(folder / "file"), "one two");
 }
 
 }  // namespace

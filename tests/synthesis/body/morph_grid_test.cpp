@@ -21,7 +21,7 @@ MetaballBody ball(double radius) {
   return body;
 }
 
-Donor donor_of(const MetaballBody& body, const Vec3d& half_axes, double share) {
+Donor make_donor(const MetaballBody& body, const Vec3d& half_axes, double share) {
   Donor donor;
   donor.share = share;
   donor.half_axes = half_axes;
@@ -29,7 +29,7 @@ Donor donor_of(const MetaballBody& body, const Vec3d& half_axes, double share) {
   return donor;
 }
 
-MetaballBody morph_of(const Vec3d& half_axes, std::vector<Donor> donors) {
+MetaballBody make_morph(const Vec3d& half_axes, std::vector<Donor> donors) {
   MetaballBody body;
   body.morph = Morph{half_axes, {}, 1.0, std::move(donors)};
   return body;
@@ -57,7 +57,7 @@ Sample sample(const testing::LoneBody& body, const Vec3d& p) {
 TEST(MorphGrid, OfBallsIsTheEllipsoid) {
   const Vec3d axes{3.0, 2.0, 1.5};
   MetaballBody body =
-      morph_of(axes, {donor_of(ball(1.0), {1, 1, 1}, 0.2), donor_of(ball(7.0), {7, 7, 7}, 3.0)});
+      make_morph(axes, {make_donor(ball(1.0), {1, 1, 1}, 0.2), make_donor(ball(7.0), {7, 7, 7}, 3.0)});
   body.morph->roughness = 1.7;
   const testing::LoneBody lone(body, 1);
   CounterRandom random(3);
@@ -76,8 +76,8 @@ TEST(MorphGrid, OfBallsIsTheEllipsoid) {
 // residual times the root of two.
 TEST(MorphGrid, KeepsTheVarianceOfResiduals) {
   const Vec3d own{1.1, 1.0, 0.95};
-  const auto donor = donor_of(nosed(), own, 1.0);
-  MetaballBody body = morph_of(own, {donor, donor});
+  const auto donor = make_donor(nosed(), own, 1.0);
+  MetaballBody body = make_morph(own, {donor, donor});
   body.morph->roughness = 1.0 / std::sqrt(2.0);
   const testing::LoneBody lone(body, 1), alone(nosed(), 1);
   CounterRandom random(4);
@@ -95,10 +95,10 @@ TEST(MorphGrid, KeepsTheVarianceOfResiduals) {
 TEST(MorphGrid, MirrorsAndTurnsDonors) {
   const Vec3d axes{1.4, 1.0, 0.8}, own{1.1, 1.1, 0.95};
   const auto body_with = [&](bool mirrored, double turn) {
-    Donor donor = donor_of(nosed(), own, 1.0);
+    Donor donor = make_donor(nosed(), own, 1.0);
     donor.mirror[0] = mirrored;
     donor.turn = turn;
-    return morph_of(axes, {donor, donor_of(ball(1.0), {1, 1, 1}, 1.0)});
+    return make_morph(axes, {donor, make_donor(ball(1.0), {1, 1, 1}, 1.0)});
   };
   const testing::LoneBody plain(body_with(false, 0.0), 1), mirrored(body_with(true, 0.0), 1),
       turned(body_with(false, 180.0), 1);
@@ -205,8 +205,8 @@ TEST(MorphGrid, RefusesShapesThatLeaveItsDomain) {
   MetaballBody far = ball(1.0);
   far.spheres.push_back({{2.6, 0, 0}, 0.4});
   far.spheres.push_back({{1.4, 0, 0}, 0.7});
-  const Donor donor = donor_of(far, {1, 1, 1}, 1.0);
-  const MetaballBody body = morph_of({1, 1, 1}, {donor, donor});
+  const Donor donor = make_donor(far, {1, 1, 1}, 1.0);
+  const MetaballBody body = make_morph({1, 1, 1}, {donor, donor});
   EXPECT_THROW(testing::LoneBody(body, 1), InputError);
 }
 

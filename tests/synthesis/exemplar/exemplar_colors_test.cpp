@@ -15,7 +15,7 @@ using testing::colored_layer;
 using testing::exemplar_layer;
 
 // The values of a channel's image along its axis, less their mean.
-std::vector<double> values_of(const ColorChannel& channel) {
+std::vector<double> channel_values(const ColorChannel& channel) {
   const ExemplarImage& image = *channel.layer.pixels;
   double mean = 0.0;
   for (const std::uint16_t v : image.values) mean += v / 65535.0 / static_cast<double>(image.values.size());
@@ -31,7 +31,7 @@ struct Moments {
   std::array<std::array<double, 3>, 3> covariance{};
 };
 template <class Values>
-Moments moments_of(const Values& rgb, double full_scale) {
+Moments find_moments(const Values& rgb, double full_scale) {
   Moments m;
   const auto n = static_cast<double>(rgb.size() / 3);
   for (std::size_t i = 0; i < rgb.size(); ++i) m.mean[i % 3] += static_cast<double>(rgb[i]) / full_scale / n;
@@ -51,7 +51,7 @@ TEST(ExemplarColors, ChannelsAddUpToTheColoursAndAreNotCorrelated) {
   const ExemplarColors colors = exemplar_colors(layer, "r");
   ASSERT_EQ(colors.channels.size(), 3u);
   std::vector<std::vector<double>> values;
-  for (const ColorChannel& channel : colors.channels) values.push_back(values_of(channel));
+  for (const ColorChannel& channel : colors.channels) values.push_back(channel_values(channel));
   const std::vector<std::uint16_t>& rgb = layer.pixels->rgb;
   for (std::size_t i = 0; i < values[0].size(); ++i) {
     Vec3d color = colors.mean;
@@ -89,8 +89,8 @@ TEST(ExemplarColors, AnImageThatWasNotLoadedIsRefused) {
 // Colours of a large plane have the mean and the covariance of the image.
 TEST(ExemplarColors, APlaneHasTheColoursOfTheImage) {
   const ExemplarLayer layer = colored_layer(1.0, 0.0);
-  const Moments photo = moments_of(layer.pixels->rgb, 65535.0),
-                plane = moments_of(synthesize_exemplar_colors(layer, "r", 1000, 800, {}), 1.0);
+  const Moments photo = find_moments(layer.pixels->rgb, 65535.0),
+                plane = find_moments(synthesize_exemplar_colors(layer, "r", 1000, 800, {}), 1.0);
   for (std::size_t a = 0; a < 3; ++a) {
     EXPECT_NEAR(plane.mean[a], photo.mean[a], 0.02);
     for (std::size_t b = 0; b < 3; ++b) {

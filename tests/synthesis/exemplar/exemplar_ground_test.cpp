@@ -45,9 +45,9 @@ TEST(LayeredGround, TurnsAFrameByTheLeastAngle) {
 
 // A ball whose dips are as steep as 40 degrees and larger than the image, with and without stones.
 struct Dips {
-  ImplicitField bare{recipe_of(false)}, stones{recipe_of(true)};
+  ImplicitField bare{make_recipe(false)}, stones{make_recipe(true)};
 
-  static Recipe recipe_of(bool with_stones) {
+  static Recipe make_recipe(bool with_stones) {
     Recipe recipe = sphere_recipe(1.0);
     FractalLayer dips = fractal_layer(0.06, 2.0, 1);
     dips.seed = 5;  // keeps its shape whatever stands below it
@@ -97,7 +97,7 @@ TEST(LayeredGround, DoesNotSquashStonesInSteepDips) {
 
 // The exemplar of a patch stands on the same ground as that of the whole body.
 TEST(LayeredGround, IsTheSameInAPatch) {
-  Recipe recipe = Dips::recipe_of(true);
+  Recipe recipe = Dips::make_recipe(true);
   const Vec3d center = Dips().point({1.0, 0.3, -0.2});
   const ImplicitField whole(recipe), patch(recipe, "r", PatchCube{center, 0.05});
   const FieldBlock block = patch.gather({center - Vec3d{0.04, 0.04, 0.04}, center + Vec3d{0.04, 0.04, 0.04}});

@@ -23,8 +23,8 @@ struct Ball {
   const ExemplarNoise& noise;
 
   Ball(const ExemplarLayer& layer, double radius)
-      : field(recipe_of(layer, radius)), noise(*field.tables().layers[0].noise.get_if<ExemplarNoise>()) {}
-  static Recipe recipe_of(const ExemplarLayer& layer, double radius) {
+      : field(make_recipe(layer, radius)), noise(*field.tables().layers[0].noise.get_if<ExemplarNoise>()) {}
+  static Recipe make_recipe(const ExemplarLayer& layer, double radius) {
     Recipe recipe = sphere_recipe(radius);
     recipe.layers = {layer};
     return recipe;
@@ -126,7 +126,7 @@ TEST(ExemplarNoise, HasThePlanesValuesOnABall) {
 
 // Metaballs reach far beyond the surface; anchors need not.
 TEST(ExemplarNoise, IsKeptOnABodyFiftyImagesWide) {
-  const Recipe recipe = Ball::recipe_of(exemplar_layer(5e-4, 1e-4), 1.0);
+  const Recipe recipe = Ball::make_recipe(exemplar_layer(5e-4, 1e-4), 1.0);
   const ImplicitField whole(recipe);
   EXPECT_TRUE(whole.left_out().empty());
   const Vec3d center{1.0, 0.0, 0.0};
@@ -140,7 +140,7 @@ TEST(ExemplarNoise, IsKeptOnABodyFiftyImagesWide) {
 
 // A body more than 64 images wide has too many anchors. The layer is left out and reported; a patch has it.
 TEST(ExemplarNoise, IsLeftOutWhereItsAnchorsAreTooMany) {
-  const Recipe recipe = Ball::recipe_of(exemplar_layer(1e-4, 1e-4), 1.0);
+  const Recipe recipe = Ball::make_recipe(exemplar_layer(1e-4, 1e-4), 1.0);
   const ImplicitField whole(recipe);
   ASSERT_EQ(whole.left_out().size(), 1u);
   EXPECT_EQ(whole.left_out()[0].variance_share, 1.0);

@@ -92,7 +92,7 @@ TEST(ExemplarTexture, HasThePowerOfThePixelsInWideWaves) {
     }
     return sum;
   };
-  const double of_pixels = power(1, [&](double x, double y) {
+  const double pixel_power = power(1, [&](double x, double y) {
     return (image.values[static_cast<std::size_t>(static_cast<int>(y) * kSide + static_cast<int>(x))] -
             32768.0) /
            7000.0;
@@ -100,10 +100,10 @@ TEST(ExemplarTexture, HasThePowerOfThePixelsInWideWaves) {
   ExemplarLayer layer = exemplar_layer(1.0, 1.0);
   layer.pixels = std::make_shared<ExemplarImage>(std::move(image));
   const Tables tables(layer);
-  const double of_spline = power(kSteps, [&](double x, double y) {
+  const double spline_power = power(kSteps, [&](double x, double y) {
     return static_cast<double>(tables.value(static_cast<float>(x), static_cast<float>(y)));
   });
-  EXPECT_NEAR(of_spline / of_pixels, 1.0, 0.05);
+  EXPECT_NEAR(spline_power / pixel_power, 1.0, 0.05);
 }
 
 // Values and slopes agree on both sides of pixels' borders, also where the image begins anew.

@@ -9,7 +9,7 @@ namespace {
 
 using testing::exemplar_layer;
 
-double variance_of(const std::vector<float>& values) {
+double find_variance(const std::vector<float>& values) {
   double sum = 0.0, square = 0.0;
   for (const float v : values)
     sum += static_cast<double>(v), square += static_cast<double>(v) * static_cast<double>(v);
@@ -24,7 +24,7 @@ TEST(PlaneExemplar, HasTheVarianceOfTheImage) {
     layer.rotation = rotation;
     double mean = 0.0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      mean += variance_of(synthesize_exemplar(layer, "r", 1000, 800, {seed, 0, false})) / 4.0;
+      mean += find_variance(synthesize_exemplar(layer, "r", 1000, 800, {seed, 0, false})) / 4.0;
     }
     EXPECT_NEAR(mean / 4.0, 1.0, 0.03) << rotation_word(rotation);
   }

@@ -25,7 +25,7 @@ RecordedMesh plain_mesh(const ImplicitField& field, int resolution, double& step
   return mesh;
 }
 
-ManifoldReport report_of(const RecordedMesh& mesh) {
+ManifoldReport check_mesh(const RecordedMesh& mesh) {
   ManifoldCheck check;
   mesh.replay(check);
   return check.finish();
@@ -36,14 +36,14 @@ TEST(EvenField, ABodyWithLayersLiesOnItsSurface) {
   for (const int resolution : {32, 64, 96}) {
     double step = 0.0;
     RecordedMesh mesh = plain_mesh(field, resolution, step);
-    const ManifoldReport before = report_of(mesh);
+    const ManifoldReport before = check_mesh(mesh);
     const std::vector<MeshVertex> plain = mesh.vertices;
     const EvenStatistics done = even_mesh(field, step, mesh, {});
     EXPECT_GT(done.after.first_percentile, 0.45) << resolution;
     EXPECT_GT(done.after.mean, 0.85);
     EXPECT_LT(done.before.first_percentile, 0.1);
     EXPECT_LT(double(done.kept), 0.02 * double(done.moved));
-    const ManifoldReport after = report_of(mesh);
+    const ManifoldReport after = check_mesh(mesh);
     EXPECT_TRUE(after.closed() && after.manifold());
     EXPECT_EQ(after.genus, before.genus);
     EXPECT_EQ(after.components, before.components);
@@ -84,9 +84,9 @@ TEST(EvenField, APatchIsEvenButForItsCuts) {
   const PatchField patch(field, {p.x, p.y, p.z});
   RecordedMesh mesh;
   const MeshStatistics made = mesh_patch(patch, 0.05, 64, mesh);
-  const ManifoldReport before = report_of(mesh);
+  const ManifoldReport before = check_mesh(mesh);
   const EvenStatistics done = even_mesh(patch, made.step, mesh, {});
-  EXPECT_EQ(report_of(mesh).open_vertices, before.open_vertices);
+  EXPECT_EQ(check_mesh(mesh).open_vertices, before.open_vertices);
   EXPECT_GE(done.kept, before.open_vertices);
   EXPECT_LT(done.kept, 2 * before.open_vertices);
   EXPECT_GT(done.after.mean, 0.88);

@@ -66,22 +66,22 @@ TEST(ImplicitField, GradientWithLayersIsTheDerivative) {
   EXPECT_NEAR(field.value(p + step) - field.value(p - step), dot(g, 2.0 * step), 2e-4);
 }
 
-std::string refusal_of(const Recipe& recipe) {
-  return testing::refusal_of([&] { const ImplicitField field(recipe, "r.json"); });
+std::string refusal_text(const Recipe& recipe) {
+  return testing::refusal_text([&] { const ImplicitField field(recipe, "r.json"); });
 }
 
 // Where no metaball reaches, s is a finite number. Greater heights would make all space matter.
 TEST(ImplicitField, HeightsThatWouldFillSpaceAreRefused) {
   Recipe recipe = sphere_recipe(100.0);
   recipe.layers = {fractal_layer(1.0, 0.01, 1), fractal_layer(1e9, 0.01, 1), fractal_layer(1.0, 0.01, 1)};
-  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[1].amplitude: heights of up to 1e+09", 0), 0u)
-      << refusal_of(recipe);
+  EXPECT_EQ(refusal_text(recipe).rfind("r.json: layers[1].amplitude: heights of up to 1e+09", 0), 0u)
+      << refusal_text(recipe);
   recipe.layers = {gabor_layer(1.0, 1e9)};
-  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[0].height_rms: ", 0), 0u) << refusal_of(recipe);
+  EXPECT_EQ(refusal_text(recipe).rfind("r.json: layers[0].height_rms: ", 0), 0u) << refusal_text(recipe);
   FractalLayer blended = fractal_layer(1.0, 0.01, 1);
   blended.use.combination = {Combine::kBlend, 1e9, false, {}};
   recipe.layers = {blended};
-  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[0].combine.width: ", 0), 0u) << refusal_of(recipe);
+  EXPECT_EQ(refusal_text(recipe).rfind("r.json: layers[0].combine.width: ", 0), 0u) << refusal_text(recipe);
 }
 
 // Just below the limit all of the field beyond the metaballs is outside, by value and by bounds.
@@ -96,7 +96,7 @@ TEST(ImplicitField, HeightsBelowTheLimitLeaveSpaceEmpty) {
         recipe.body->operations.push_back(operation);
       }
       recipe.layers = {fractal_layer(1e9, 1.0, 1)};
-      const std::string refusal = refusal_of(recipe);
+      const std::string refusal = refusal_text(recipe);
       ASSERT_NE(refusal, "no error") << kernel_word(kernel);
       const double limit = std::stod(refusal.substr(refusal.rfind(' ')));  // of three digits
       EXPECT_GT(limit, 100.0) << "radii";

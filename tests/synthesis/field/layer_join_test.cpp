@@ -83,7 +83,8 @@ TEST(LayerJoin, ReplacedByLocalityIsEitherLayer) {
 
 TEST(LayerJoin, ABlendIsSymmetricAndNeverBelowEither) {
   const FractalLayer a = named("a", 0.05, 3.0, 1), b = named("b", 0.04, 5.0, 2);
-  const std::vector<double> of_a = elevations(with_layers({a})), of_b = elevations(with_layers({b}));
+  const std::vector<double> elevations_a = elevations(with_layers({a})),
+                            elevations_b = elevations(with_layers({b}));
   const auto blended = [](FractalLayer first, FractalLayer second, double width) {
     second.use.combination = kind(Combine::kBlend, width);
     first.use.combination = kind(Combine::kReplace);
@@ -93,13 +94,14 @@ TEST(LayerJoin, ABlendIsSymmetricAndNeverBelowEither) {
   const std::vector<double> ab = blended(a, b, width), sharp = blended(a, b, 0.0);
   EXPECT_LT(largest_difference(ab, blended(b, a, width)), kRounding);
   for (std::size_t i = 0; i < ab.size(); ++i) {
-    const double higher = std::max(of_a[i], of_b[i]);
+    const double higher = std::max(elevations_a[i], elevations_b[i]);
     EXPECT_NEAR(sharp[i], higher, kRounding);
     EXPECT_GE(ab[i], higher - kRounding);
     EXPECT_LE(ab[i], higher + 0.5 * width + kRounding);
     // But for its rounding, the union is zero where R_1 of both heights is zero: (f + g + |f - g|) / 2 + ...
-    const double d = of_a[i] - of_b[i];
-    EXPECT_NEAR(ab[i], 0.5 * (of_a[i] + of_b[i] + std::sqrt(d * d + width * width)), kRounding);
+    const double d = elevations_a[i] - elevations_b[i];
+    EXPECT_NEAR(ab[i], 0.5 * (elevations_a[i] + elevations_b[i] + std::sqrt(d * d + width * width)),
+                kRounding);
   }
 }
 

@@ -40,10 +40,10 @@ std::vector<float> weights(const LoneWeight& weight, const FloatPoints& p) {
   return w;
 }
 // The weight of a lone point.
-float weight_of(const LoneWeight& weight, const Vec3f& p) {
+float lone_weight(const LoneWeight& weight, const Vec3f& p) {
   return weight_at(weight.tables, weight.arrays.view(), p);
 }
-Interval bound_of(const LoneWeight& weight, const Box& box) {
+Interval find_bound(const LoneWeight& weight, const Box& box) {
   return bound_weight(weight.tables, weight.arrays.view(), box);
 }
 
@@ -94,7 +94,7 @@ TEST(LocalWeight, BitsDependOnThePointAlone) {
     FloatPoints alone;
     alone.add({p.x, p.y, p.z});
     ASSERT_EQ(math::to_bits(weights(weight, alone)[0]), math::to_bits(together[i]));
-    ASSERT_EQ(math::to_bits(weight_of(weight, p)), math::to_bits(together[i]));
+    ASSERT_EQ(math::to_bits(lone_weight(weight, p)), math::to_bits(together[i]));
   }
 }
 
@@ -107,9 +107,9 @@ TEST(LocalWeight, ManySpheresAreTheNearestOnes) {
     const Box box = random_cube(random, -3.0, 0.0);
     const FloatPoints points(random, box, 300);
     const std::vector<float> together = weights(weight, points);
-    const Interval bound = bound_of(weight, box);
+    const Interval bound = find_bound(weight, box);
     for (std::size_t i = 0; i < together.size(); ++i) {
-      const float alone = weight_of(weight, {points.x[i], points.y[i], points.z[i]});
+      const float alone = lone_weight(weight, {points.x[i], points.y[i], points.z[i]});
       ASSERT_EQ(math::to_bits(alone), math::to_bits(together[i]));
       ASSERT_TRUE(together[i] >= bound.low && together[i] <= bound.high);
     }
@@ -124,7 +124,7 @@ TEST(LocalWeight, BoundsHoldEveryValue) {
     if (body.groups[0].spheres.empty() || body.groups[1].spheres.empty()) continue;
     const LoneWeight weight({"left", std::pow(10.0, random.uniform(-3.0, -0.5))}, body);
     const Box box = random_cube(random, -3.0, -0.5);
-    const Interval bound = bound_of(weight, box);
+    const Interval bound = find_bound(weight, box);
     narrow += bound.high - bound.low < 0.2;
     for (const float w : weights(weight, FloatPoints(random, box, 50))) {
       ASSERT_GE(w, bound.low);
@@ -137,7 +137,7 @@ TEST(LocalWeight, BoundsHoldEveryValue) {
 TEST(LocalWeight, AGroupOfAllSpheresIsEverywhere) {
   Recipe recipe = testing::potato_recipe(5, 1);
   recipe.body->groups = {{"all", {0, 1, 2, 3, 4}}};
-  EXPECT_EQ(weight_of(LoneWeight({"all", 1.0}, *recipe.body), {3, 0, 0}), 1.0f);
+  EXPECT_EQ(lone_weight(LoneWeight({"all", 1.0}, *recipe.body), {3, 0, 0}), 1.0f);
 }
 
 TEST(LocalWeight, NeedsItsGroup) {

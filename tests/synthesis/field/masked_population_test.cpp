@@ -38,7 +38,7 @@ CraterLayer masked_craters(int count) {
   return layer;
 }
 
-std::vector<Vec3d> places_of(const ImplicitField& field) {
+std::vector<Vec3d> find_places(const ImplicitField& field) {
   std::vector<Vec3d> places;
   for (const PlacedCrater& c : field.craters().front().craters) places.push_back(c.position);
   return places;
@@ -66,7 +66,7 @@ TEST(MaskedPopulation, DensityFollowsTheMaskingLayer) {
   FractalLayer warp = named_noise("warp", Combine::kWarp);
   warp.use.combination.direction = {0.3, 0.1, -0.2};
   recipe.layers = {warp, named_noise("where", Combine::kMask), masked_craters(20000)};
-  const std::vector<Vec3d> places = places_of(ImplicitField(recipe));
+  const std::vector<Vec3d> places = find_places(ImplicitField(recipe));
   ASSERT_EQ(places.size(), 20000u);
   Recipe shown = recipe;
   shown.layers = {warp, named_noise("where", Combine::kAdd)};
@@ -74,7 +74,7 @@ TEST(MaskedPopulation, DensityFollowsTheMaskingLayer) {
   const LayerMask mask{"where", -0.002, 0.003};
   constexpr int kBins = 12;
   std::vector<double> expected(kBins), counts(kBins);
-  const auto bin_of = [](double height) {
+  const auto bin_at = [](double height) {
     return static_cast<std::size_t>(
         std::clamp(static_cast<int>((height + 0.002) / 0.005 * kBins), 0, kBins - 1));
   };
@@ -82,10 +82,10 @@ TEST(MaskedPopulation, DensityFollowsTheMaskingLayer) {
     return double{smooth_step(static_cast<float>(height), -0.002f, 200.0f)};
   };
   for (const double height : heights_at(shown, uniform_places(recipe, 200000)))
-    expected[bin_of(height)] += weight(height);
+    expected[bin_at(height)] += weight(height);
   for (const double height : heights_at(shown, places)) {
     ASSERT_GT(height, mask.from - 1e-5);
-    ++counts[bin_of(height)];
+    ++counts[bin_at(height)];
   }
   const double whole = std::accumulate(expected.begin(), expected.end(), 0.0);
   double chi_squared = 0.0;
@@ -111,7 +111,7 @@ TEST(MaskedPopulation, LocalityBindsLandformsToAGroup) {
   craters.population->drawn.locality = Locality{"left", 0.01};
   recipe.layers = {craters};
   int right = 0;
-  for (const Vec3d& p : places_of(ImplicitField(recipe))) right += p.x > 0.75;
+  for (const Vec3d& p : find_places(ImplicitField(recipe))) right += p.x > 0.75;
   EXPECT_GT(right, 0);
   EXPECT_LT(right, 60);  // the arctangent falls slowly
 }
@@ -121,7 +121,7 @@ TEST(MaskedPopulation, LayersWithoutAHeightMaskNothing) {
   GaborLayer flat = testing::gabor_layer(0.1, 0.0);
   flat.name = "where";
   recipe.layers = {flat, masked_craters(5)};
-  EXPECT_TRUE(testing::has(testing::refusal_of([&] { const ImplicitField field(recipe, "r"); }),
+  EXPECT_TRUE(testing::has(testing::refusal_text([&] { const ImplicitField field(recipe, "r"); }),
                            "r: layers[1].population.mask.layer: \"where\" has no height"));
 }
 
@@ -139,7 +139,7 @@ TEST(MaskedPopulation, ReadsTheRoughnessOfTheMaskingLayer) {
     drawn.density = 50.0;
     drawn.mask = LayerMask{"where", 0.05, 0.1, 0.02};
     recipe.layers = {where, craters};
-    return places_of(ImplicitField(recipe)).size();
+    return find_places(ImplicitField(recipe)).size();
   };
   EXPECT_EQ(places_by_wave(0.8), 0u);
   EXPECT_GT(places_by_wave(20.0), 200u);
@@ -192,17 +192,17 @@ TEST(PopulationByCellsOnAField, OverlappingPatchesAgree) {
   const Recipe recipe = fine_ground();
   const PatchCube a = cube_about({0.3, -0.5, 0.8}, 60.0);
   const PatchCube b{a.center + Vec3d{9.0, 6.0, -1.0}, 30.0};
-  const ImplicitField of_a(recipe, "r", a), of_b(recipe, "r", b);
-  ASSERT_GT(of_a.boulders().front().boulders.size(), 100u);
-  ASSERT_LT(of_a.boulders().front().boulders.size(), 20000u);
-  EXPECT_EQ(of_a.height_bound(), of_b.height_bound());
+  const ImplicitField field_a(recipe, "r", a), field_b(recipe, "r", b);
+  ASSERT_GT(field_a.boulders().front().boulders.size(), 100u);
+  ASSERT_LT(field_a.boulders().front().boulders.size(), 20000u);
+  EXPECT_EQ(field_a.height_bound(), field_b.height_bound());
   CounterRandom random(3);
   std::vector<Vec3d> points;
   while (points.size() < 4000) {
     const Vec3d p = b.center + Vec3d{random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)};
     points.push_back((250.0 + random.uniform(-2, 3)) / norm(p) * p);
   }
-  const std::vector<float> in_a = values_in(of_a, points), in_b = values_in(of_b, points);
+  const std::vector<float> in_a = values_in(field_a, points), in_b = values_in(field_b, points);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(in_a[i], in_b[i]) << i;
   // Without the landforms F is another.
   Recipe bare = recipe;

@@ -203,12 +203,12 @@ class GaborReference {
 
   double height(const Vec3d& p) const {
     double sum = 0.0;
-    for (const GaborBand& band : gabor_bands(layer_)) sum += height_of(band, p);
+    for (const GaborBand& band : gabor_bands(layer_)) sum += noise_height(band, p);
     return sum;
   }
 
  private:
-  double height_of(const GaborBand& band, const Vec3d& p) const {
+  double noise_height(const GaborBand& band, const Vec3d& p) const {
     const double a = band.a / layer_.pixel_size;
     const double cell = static_cast<float>(kGaborSpaceCell / a);
     const int count =
@@ -226,15 +226,15 @@ class GaborReference {
     for (std::int64_t z = at[2] - around; z <= at[2] + around; ++z) {
       for (std::int64_t y = at[1] - around; y <= at[1] + around; ++y) {
         for (std::int64_t x = at[0] - around; x <= at[0] + around; ++x) {
-          sum += of_cell(band, a, cell, count, {x, y, z}, seed, p);
+          sum += cell_noise(band, a, cell, count, {x, y, z}, seed, p);
         }
       }
     }
     return amplitude * sum;
   }
 
-  double of_cell(const GaborBand& band, double a, double cell, int count,
-                 const std::array<std::int64_t, 3>& c, std::uint32_t seed, const Vec3d& p) const {
+  double cell_noise(const GaborBand& band, double a, double cell, int count,
+                    const std::array<std::int64_t, 3>& c, std::uint32_t seed, const Vec3d& p) const {
     const auto corner = [&](int axis) { return static_cast<double>(c[static_cast<std::size_t>(axis)]); };
     const Vec3d center{(corner(0) + 0.5) * cell, (corner(1) + 0.5) * cell, (corner(2) + 0.5) * cell};
     const Vec3d n = normalized(center);

@@ -46,7 +46,7 @@ bool equal_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 // Expects the mesh that all samples give. Returns evaluations a vertex: of it, and of the mesh by all
 // samples.
-std::array<double, 2> expect_mesh_of_all_samples(const ImplicitField& field, int resolution) {
+std::array<double, 2> expect_full_mesh(const ImplicitField& field, int resolution) {
   MeshCollector some, all;
   const MeshStatistics made = mesh_field<kBlockCells>(field, field.bounds(), resolution, some);
   const MeshStatistics full = mesh_field<kBlockCells>(FullySampled(field), field.bounds(), resolution, all);
@@ -62,7 +62,7 @@ TEST(SureSigns, TheMeshIsThatOfAllSamples) {
     SCOPED_TRACE("recipe " + std::to_string(seed));
     const ImplicitField field(testing::random_recipe(seed));
     if (field.bounds().empty()) continue;
-    expect_mesh_of_all_samples(field, 30 + 7 * static_cast<int>(seed % 5));
+    expect_full_mesh(field, 30 + 7 * static_cast<int>(seed % 5));
   }
 }
 
@@ -75,7 +75,7 @@ TEST(SureSigns, BodiesAsFitsMakeThemNeedFewSamples) {
       Recipe recipe = testing::potato_recipe(60, 3, sharpness);
       recipe.body->cutoff_radii = 9.0;
       if (dented) testing::add_dents(*recipe.body, 10, random);
-      const auto [some, all] = expect_mesh_of_all_samples(ImplicitField(recipe), 128);
+      const auto [some, all] = expect_full_mesh(ImplicitField(recipe), 128);
       // Narrow kernels bend the level within a block of a coarse grid, and the supports of the dents end
       // where their kernels still matter. Fewer signs are proven there.
       EXPECT_LT(some, (dented || sharpness > 1.0 ? 1.1 : 0.5) * all);

@@ -18,7 +18,7 @@ using testing::colored_layer;
 using testing::exemplar_layer;
 using testing::sphere_recipe;
 
-TriangleMesh mesh_of(const Recipe& recipe) {
+TriangleMesh make_mesh(const Recipe& recipe) {
   const ImplicitField field(recipe);
   MeshCollector collector;
   mesh_field(field, field.bounds(), 40, collector);
@@ -44,7 +44,7 @@ TEST(SurfaceColors, ColoursFitTheHeights) {
   layer.height_range = 0.01;
   layer.color = true;
   recipe.layers = {layer};
-  const TriangleMesh mesh = mesh_of(recipe);
+  const TriangleMesh mesh = make_mesh(recipe);
   const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
                            without = values_at(ImplicitField(bare), mesh);
   const std::vector<VertexColor> colors = evaluate_colors(recipe, mesh);
@@ -63,7 +63,7 @@ TEST(SurfaceColors, AMaskAndTheOrderOfLayersSayWhoPaints) {
   ExemplarLayer stones = colored_layer(0.01, 0.0);
   stones.use.mask = LayerMask{"hills", 0.0, 1e-4};
   recipe.layers = {hills, stones};
-  const TriangleMesh mesh = mesh_of(recipe);
+  const TriangleMesh mesh = make_mesh(recipe);
   const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
                            without = values_at(ImplicitField(sphere_recipe(1.0)), mesh);
   const std::vector<VertexColor> colors = evaluate_colors(recipe, mesh);
@@ -94,9 +94,9 @@ TEST(SurfaceColors, ALayerOfColourAloneMovesNothing) {
   ExemplarLayer layer = colored_layer(0.01, 0.0);
   layer.use.combination.kind = Combine::kReplace;
   painted.layers[1] = layer;
-  const TriangleMesh mesh = mesh_of(plain);
+  const TriangleMesh mesh = make_mesh(plain);
   const ImplicitField field(painted);
-  EXPECT_EQ(mesh_of(painted).vertices.size(), mesh.vertices.size());
+  EXPECT_EQ(make_mesh(painted).vertices.size(), mesh.vertices.size());
   EXPECT_EQ(values_at(field, mesh), values_at(ImplicitField(plain), mesh));
   const FieldView& tables = field.tables();
   BlockListStore blocks(tables);
@@ -111,7 +111,7 @@ TEST(SurfaceColors, ALayerOfColourAloneMovesNothing) {
 TEST(SurfaceColors, HaveTheSameBytesForOneThreadAndForManyAndInPortions) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.layers = {colored_layer(0.01, 0.01)};
-  const TriangleMesh mesh = mesh_of(recipe);
+  const TriangleMesh mesh = make_mesh(recipe);
   const auto painted = [&](int threads) {
     const ThreadLimit limit(threads);
     return evaluate_colors(recipe, mesh);

@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-std::vector<MeshVertex> vertices_of(const Recipe& recipe) {
+std::vector<MeshVertex> mesh_vertices(const Recipe& recipe) {
   const ImplicitField field(recipe);
   MeshCollector collector;
   mesh_field(field, field.bounds(), 40, collector);
@@ -21,8 +21,8 @@ std::vector<MeshVertex> vertices_of(const Recipe& recipe) {
   return vertices;
 }
 
-std::vector<VertexLabel> labels_of(const Recipe& recipe, const std::vector<MeshVertex>& vertices,
-                                   const Vec3d& origin = {}) {
+std::vector<VertexLabel> find_labels(const Recipe& recipe, const std::vector<MeshVertex>& vertices,
+                                     const Vec3d& origin = {}) {
   std::vector<VertexLabel> labels(vertices.size());
   SurfaceLabels(recipe, ImplicitField(recipe)).label(origin, vertices, labels);
   return labels;
@@ -30,7 +30,7 @@ std::vector<VertexLabel> labels_of(const Recipe& recipe, const std::vector<MeshV
 
 TEST(SurfaceLabels, ABareBodyIsLabelZeroAtNoHeight) {
   const Recipe recipe = testing::sphere_recipe(1.0);
-  for (const VertexLabel& label : labels_of(recipe, vertices_of(recipe))) {
+  for (const VertexLabel& label : find_labels(recipe, mesh_vertices(recipe))) {
     EXPECT_EQ(label.label, 0);
     EXPECT_EQ(label.elevation, 0.0f);
   }
@@ -45,8 +45,8 @@ TEST(SurfaceLabels, LocalLayersHaveTheirPlaces) {
   left.use.locality = Locality{"left", 1e-4};
   right.use.locality = Locality{"right", 1e-4};
   recipe.layers = {left, right};
-  const std::vector<MeshVertex> vertices = vertices_of(recipe);
-  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  const std::vector<MeshVertex> vertices = mesh_vertices(recipe);
+  const std::vector<VertexLabel> labels = find_labels(recipe, vertices);
   int wrong = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (std::fabs(vertices[i].position.x) < 0.2f) continue;
@@ -73,8 +73,8 @@ TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
   hills.name = "hills";
   grit.use.mask = LayerMask{"hills", -0.01, 0.01};
   recipe.layers = {boulders, hills, craters, grit};
-  const std::vector<MeshVertex> vertices = vertices_of(recipe);
-  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  const std::vector<MeshVertex> vertices = mesh_vertices(recipe);
+  const std::vector<VertexLabel> labels = find_labels(recipe, vertices);
   std::vector<float> ground(vertices.size());
   std::vector<VertexLabel> again(vertices.size());
   SurfaceLabels(recipe, ImplicitField(recipe)).label({}, vertices, again, ground);
@@ -153,10 +153,10 @@ TEST(SurfaceLabels, FineBouldersOfAPatchAreThoseOfItsMesh) {
 TEST(SurfaceLabels, AnOriginIsAdded) {
   Recipe recipe = testing::potato_recipe(12, 2);
   recipe.layers = {testing::fractal_layer(0.05, 3.0, 2), testing::fractal_layer(0.03, 9.0, 2)};
-  std::vector<MeshVertex> vertices = vertices_of(recipe);
-  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  std::vector<MeshVertex> vertices = mesh_vertices(recipe);
+  const std::vector<VertexLabel> labels = find_labels(recipe, vertices);
   for (MeshVertex& v : vertices) v.position.x -= 0.25f;
-  const std::vector<VertexLabel> moved = labels_of(recipe, vertices, {0.25, 0.0, 0.0});
+  const std::vector<VertexLabel> moved = find_labels(recipe, vertices, {0.25, 0.0, 0.0});
   std::size_t same = 0;
   for (std::size_t i = 0; i < labels.size(); ++i) same += labels[i].label == moved[i].label;
   EXPECT_GE(same, labels.size() - labels.size() / 500);

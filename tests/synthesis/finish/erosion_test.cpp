@@ -41,7 +41,7 @@ Eroded eroded(const Recipe& recipe, int resolution, double talus_angle, int most
 }
 
 // Rock, by its definition: a face of the vertex leans over, or stands within 5 degrees of the vertical.
-std::vector<bool> rock_of(const Eroded& e) {
+std::vector<bool> find_rock(const Eroded& e) {
   std::vector<bool> rock(e.up.size(), false);
   for (const Triangle& t : e.before.triangles) {
     const Vec3d& p = e.before.vertices[t[0]];
@@ -110,7 +110,7 @@ TEST(Erosion, SettledIsSaidOfTheFinishedMesh) {
   for (const double period : {2.7, 3.0}) {
     const Eroded e = eroded(lobes, 40, 15.0, 20000, {2000.0, period});
     EXPECT_GT(e.statistics.rock_vertices, 0) << period;
-    EXPECT_DOUBLE_EQ(e.statistics.steepest_after, steepest_edge(e.after, e.up, rock_of(e))) << period;
+    EXPECT_DOUBLE_EQ(e.statistics.steepest_after, steepest_edge(e.after, e.up, find_rock(e))) << period;
     EXPECT_EQ(e.statistics.settled, e.statistics.steepest_after <= 15.0) << period;
     EXPECT_TRUE(e.statistics.settled) << period << ": " << e.statistics.steepest_after;
     EXPECT_NEAR(volume(e.after) / volume(e.before), 1.0, 1e-12) << period;

@@ -29,7 +29,7 @@ Recipe ball() {
   return recipe;
 }
 
-Recipe family_of(std::vector<DrawnField> fields) {
+Recipe make_family(std::vector<DrawnField> fields) {
   Recipe recipe = ball();
   recipe.family = Family{std::move(fields)};
   return recipe;
@@ -54,17 +54,18 @@ double largest_distance(const Recipe& recipe, const std::function<double(double)
 constexpr double kOnePercent = 1.628 / 31.623;
 
 TEST(FamilyMember, DrawsFromTheDistributionsThatTheRecipeStates) {
-  EXPECT_LT(largest_distance(family_of({drawn("layers[0].amplitude", Distribution::kUniform, 2.0, 6.0)}),
+  EXPECT_LT(largest_distance(make_family({drawn("layers[0].amplitude", Distribution::kUniform, 2.0, 6.0)}),
                              [](double x) { return (x - 2.0) / 4.0; }),
             kOnePercent);
-  EXPECT_LT(largest_distance(family_of({drawn("layers[0].amplitude", Distribution::kLogUniform, 0.01, 10.0)}),
-                             [](double x) { return std::log(x / 0.01) / std::log(1000.0); }),
-            kOnePercent);
+  EXPECT_LT(
+      largest_distance(make_family({drawn("layers[0].amplitude", Distribution::kLogUniform, 0.01, 10.0)}),
+                       [](double x) { return std::log(x / 0.01) / std::log(1000.0); }),
+      kOnePercent);
   DrawnField normal = drawn("layers[0].amplitude", Distribution::kNormal, 1.0, 6.0);
   normal.mean = 3.0;
   normal.deviation = 2.0;
   const auto below = [](double x) { return 0.5 * std::erfc((3.0 - x) / (2.0 * std::sqrt(2.0))); };
-  EXPECT_LT(largest_distance(family_of({normal}),
+  EXPECT_LT(largest_distance(make_family({normal}),
                              [&](double x) { return (below(x) - below(1.0)) / (below(6.0) - below(1.0)); }),
             kOnePercent);
 }
@@ -74,7 +75,7 @@ TEST(FamilyMember, DrawsWholeNumbersAndChoicesEvenly) {
   choice.field = "layers[1].amplitude";
   choice.distribution = Distribution::kChoice;
   choice.values = {0.25, 0.5, 8.0};
-  const Recipe recipe = family_of({drawn("layers[0].octaves", Distribution::kInteger, 2.0, 5.0), choice});
+  const Recipe recipe = make_family({drawn("layers[0].octaves", Distribution::kInteger, 2.0, 5.0), choice});
   std::vector<int> octaves(6, 0), choices(3, 0);
   for (std::uint64_t k = 0; k < 1200; ++k) {
     const FamilyMember member = family_member(recipe, k);
@@ -89,7 +90,7 @@ TEST(FamilyMember, DrawsWholeNumbersAndChoicesEvenly) {
 }
 
 TEST(FamilyMember, IsAFunctionOfTheRecipeAndTheNumber) {
-  const Recipe recipe = family_of({drawn("layers[0].amplitude", Distribution::kUniform, 1.0, 2.0)});
+  const Recipe recipe = make_family({drawn("layers[0].amplitude", Distribution::kUniform, 1.0, 2.0)});
   Recipe more = recipe;
   more.family->fields.push_back(drawn("layers[1].amplitude", Distribution::kUniform, 1.0, 2.0));
   const FamilyMember member = family_member(recipe, 4711);
@@ -122,8 +123,8 @@ TEST(FamilyMember, RefusesNumbersThatBreakARuleTogether) {
   craters.population->drawn.least_diameter = 0.1;
   craters.population->drawn.greatest_diameter = 0.4;
   Recipe recipe =
-      family_of({drawn("layers[2].population.least_diameter", Distribution::kUniform, 0.1, 0.3),
-                 drawn("layers[2].population.greatest_diameter", Distribution::kUniform, 0.1, 0.5)});
+      make_family({drawn("layers[2].population.least_diameter", Distribution::kUniform, 0.1, 0.3),
+                   drawn("layers[2].population.greatest_diameter", Distribution::kUniform, 0.1, 0.5)});
   recipe.layers.push_back(craters);
   int refused = 0;
   for (std::uint64_t k = 0; k < 50; ++k) {

@@ -21,7 +21,7 @@ Recipe ball(double radius, const std::string& unit) {
 }
 
 std::string refusal(const Recipe& recipe, const FinishRequest& request) {
-  return testing::refusal_of([&] { finish_recipe(recipe, "r.json", request); });
+  return testing::refusal_text([&] { finish_recipe(recipe, "r.json", request); });
 }
 
 TEST(KnownPopulation, HasThePublishedNumbers) {

@@ -83,9 +83,10 @@ TEST(LayOnBase, LengthsOfALayersUseAreConverted) {
 }
 
 TEST(LayOnBase, PixelsAndMissingBodiesAreErrorsThatNameTheFile) {
-  EXPECT_TRUE(testing::has(
-      testing::refusal_of([&] { lay_on_base(bumps("px", 1.0), "rock.json", ball("km", 1.0), "ball.json"); }),
-      "rock.json: length_unit"));
+  EXPECT_TRUE(testing::has(testing::refusal_text([&] {
+                             lay_on_base(bumps("px", 1.0), "rock.json", ball("km", 1.0), "ball.json");
+                           }),
+                           "rock.json: length_unit"));
   EXPECT_THROW(lay_on_base(bumps("m", 1.0), "a", bumps("m", 1.0), "b"), InputError);
 }
 
@@ -142,7 +143,7 @@ TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
   EXPECT_NEAR(edge_by("body"), 0.5, 1e-3);
   EXPECT_DOUBLE_EQ(edge_by("edges"), 1.0);
   const auto refused = [&](const Recipe& layers, const char* lengths) {
-    return testing::refusal_of(
+    return testing::refusal_text(
         [&] { lay_on_base(layers, "details", ball("m", 1.0), "base", parse_base_lengths(lengths)); });
   };
   EXPECT_TRUE(testing::has(refused(details, "edges"), "base: layers: hold no relief"));

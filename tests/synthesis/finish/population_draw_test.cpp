@@ -20,7 +20,7 @@ struct Frame {
   Vec3d center, half_axes;
   std::array<Vec3d, 3> axes;
 };
-Frame frame_of(const TriangleMesh& mesh) {
+Frame find_frame(const TriangleMesh& mesh) {
   const BodyMass mass = body_mass(mesh);
   const PrincipalAxes principal = principal_axes(mass.inertia);
   const auto& [a, b, c] = principal.moments;
@@ -30,7 +30,7 @@ Frame frame_of(const TriangleMesh& mesh) {
 
 MeasuredBody measured(const std::string& name, BodyClass kind, double diameter, const Recipe& recipe) {
   const TriangleMesh mesh = make_coarse_mesh(ImplicitField(recipe), 48);
-  const Frame frame = frame_of(mesh);
+  const Frame frame = find_frame(mesh);
   MeasuredBody body;
   body.name = name;
   body.kind = kind;
@@ -62,7 +62,7 @@ const Recipe& shared_population() {
   return recipe;
 }
 
-TriangleMesh mesh_of(const Recipe& recipe) { return make_coarse_mesh(ImplicitField(recipe), 64); }
+TriangleMesh make_mesh(const Recipe& recipe) { return make_coarse_mesh(ImplicitField(recipe), 64); }
 
 TEST(PopulationDraw, IsAFunctionOfTheSeed) {
   Recipe recipe = shared_population();
@@ -83,14 +83,14 @@ TEST(PopulationDraw, GivesWholeBodiesOfTheirSize) {
   constexpr int kDraws = 12;
   for (recipe.seed = 0; recipe.seed < kDraws; ++recipe.seed) {
     const DrawnBody drawn = draw_body(recipe);
-    const TriangleMesh mesh = mesh_of(drawn.recipe);
+    const TriangleMesh mesh = make_mesh(drawn.recipe);
     const MeshTopology topology = analyze_topology(mesh);
     EXPECT_TRUE(topology.closed);
     EXPECT_EQ(topology.components, 1);
     EXPECT_EQ(topology.genus, 0);
     EXPECT_NEAR(std::cbrt(6.0 / std::numbers::pi * volume(mesh)), drawn.diameter, 0.01 * drawn.diameter);
     EXPECT_LT(norm(volume_centroid(mesh)), 0.01 * drawn.diameter);
-    const Frame frame = frame_of(mesh);
+    const Frame frame = find_frame(mesh);
     EXPECT_GT(std::fabs(frame.axes[0].x), 0.8);
     EXPECT_FALSE(drawn.recipe.population);
     double shares = 0.0;
@@ -120,7 +120,7 @@ TEST(PopulationDraw, HeedsItsConditions) {
   draw.axes_deviation = 0.0;
   double longest = 0.0, middle = 0.0;
   for (recipe.seed = 0; recipe.seed < 8; ++recipe.seed) {
-    const Vec3d half = frame_of(mesh_of(draw_body(recipe).recipe)).half_axes;
+    const Vec3d half = find_frame(make_mesh(draw_body(recipe).recipe)).half_axes;
     longest += half.x / half.z / 8.0, middle += half.y / half.z / 8.0;
   }
   EXPECT_NEAR(longest, 1.6, 0.2);

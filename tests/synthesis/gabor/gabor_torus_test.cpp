@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-GaborLayer layer_of(std::vector<GaborLobe> lobes) {
+GaborLayer make_layer(std::vector<GaborLobe> lobes) {
   GaborLayer layer;
   layer.height_rms = 1.0;
   layer.lobes = std::move(lobes);
@@ -30,24 +30,24 @@ TEST(GaborTorus, CorrelationIsTheGaussians) {
 }
 
 TEST(GaborTorus, WideLobesKeepTheirVarianceAndNarrowOnesDependOnTheirFrequency) {
-  EXPECT_NEAR(torus_variance(layer_of({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
+  EXPECT_NEAR(torus_variance(make_layer({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
   // Lobes narrower than the steps between frequencies: one has all its variance on one frequency, the other
   // lies between two.
-  EXPECT_GT(torus_variance(layer_of({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
-  EXPECT_LT(torus_variance(layer_of({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
+  EXPECT_GT(torus_variance(make_layer({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
+  EXPECT_LT(torus_variance(make_layer({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
 }
 
 // A period of 1.5 / a is longer than the reach of one kernel and shorter than that of two.
 TEST(GaborTorus, VarianceCountsKernelsThatOverlapTheirCopies) {
   const double period = 64 * std::ldexp(std::sqrt(M_PI / (2.0 * std::log(2.0))), -6);
-  EXPECT_NEAR(torus_variance(layer_of({{6, 4.0 / 64, 0.0, 1.0}}), 64, 4096),
+  EXPECT_NEAR(torus_variance(make_layer({{6, 4.0 / 64, 0.0, 1.0}}), 64, 4096),
               1.0 + 2.0 * std::exp(-M_PI * period * period / 2), 0.02);
 }
 
 // Every pixel equals the one a period away. A texture of twice the period in each direction shows this for
 // any position of the inner squares of 64 pixels.
 TEST(GaborTorus, TheTextureRepeatsExactly) {
-  const GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
+  const GaborLayer layer = make_layer({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
   TextureOptions options{7};
   options.period_width = 150;
   options.period_height = 97;
@@ -64,7 +64,7 @@ TEST(GaborTorus, TheTextureRepeatsExactly) {
 }
 
 TEST(GaborTorus, VarianceIsStatedWhateverThePeriod) {
-  const GaborLayer layer = layer_of({{3, 0.2, 0.1, 1.0}, {6, 0.05, 0.04, 1.0}, {6, 0.21, 0.01, 1.0}});
+  const GaborLayer layer = make_layer({{3, 0.2, 0.1, 1.0}, {6, 0.05, 0.04, 1.0}, {6, 0.21, 0.01, 1.0}});
   for (const int n : {48, 64, 100}) {
     double sum = 0.0;
     constexpr int kSeeds = 400;
@@ -77,10 +77,10 @@ TEST(GaborTorus, VarianceIsStatedWhateverThePeriod) {
 }
 
 TEST(GaborTorus, PeriodsTooSmallForTheLobesAreRefused) {
-  const GaborLayer narrow = layer_of({{12, 0.1, 0.1, 1.0}});
+  const GaborLayer narrow = make_layer({{12, 0.1, 0.1, 1.0}});
   EXPECT_THROW(synthesize_texture(narrow, 64, 64, {1, 0, 64, 64}), InputError);
   EXPECT_THROW(synthesize_texture(narrow, 1, 1, {1, 0, 1, 1}), InputError);
-  EXPECT_NO_THROW(synthesize_texture(layer_of({{1, 0.0, 0.0, 1.0}}), 8, 8, {1, 0, 8, 8}));
+  EXPECT_NO_THROW(synthesize_texture(make_layer({{1, 0.0, 0.0, 1.0}}), 8, 8, {1, 0, 8, 8}));
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(BoulderField, AxesLieAsTheHeadingSays) {
 }
 
 // The direction against gravity and centrifugal force on a ball about the origin, by hand.
-Vec3d vertical_of_ball(const Vec3d& p, const LocalGravity& gravity) {
+Vec3d ball_vertical(const Vec3d& p, const LocalGravity& gravity) {
   const double turn = 2.0 * std::numbers::pi / (3600.0 * gravity.rotation_period);
   const double pull = 4.0 / 3.0 * std::numbers::pi * 6.6743e-11 * gravity.density;
   return normalized(pull * p - turn * turn * Vec3d{p.x, p.y, 0.0});
@@ -170,7 +170,7 @@ TEST(BoulderField, StandUprightInTheGravityOfAFastRotator) {
     const PlacedBoulder& at_rest = still.boulders()[0].boulders[i];
     const PlacedBoulder& leaning = turning.boulders()[0].boulders[i];
     const Vec3d normal = normalized(at_rest.center), foot = 10.0 * normal;
-    const Vec3d vertical = vertical_of_ball(foot, *layer.gravity);
+    const Vec3d vertical = ball_vertical(foot, *layer.gravity);
     EXPECT_LT(degrees_between(at_rest.directions[2], normal), 1e-3);
     EXPECT_LT(degrees_between(leaning.directions[2], vertical), 0.2);
     // The foot stays, and the centre lies along the vertical, as high as along the normal before.
@@ -190,7 +190,7 @@ TEST(BoulderField, StandAlongTheNormalWhereNothingRests) {
   const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
   const std::vector<PlacedBoulder>& boulders = field.boulders()[0].boulders;
   EXPECT_LT(degrees_between(boulders[0].directions[2], {1, 0, 0}), 1e-3);
-  EXPECT_LT(degrees_between(boulders[1].directions[2], vertical_of_ball({0, 6, 8}, *layer.gravity)), 0.2);
+  EXPECT_LT(degrees_between(boulders[1].directions[2], ball_vertical({0, 6, 8}, *layer.gravity)), 0.2);
 }
 
 // The mesh of the bare body has no facet of these two grains.

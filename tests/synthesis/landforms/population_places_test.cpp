@@ -29,7 +29,7 @@ Population counted(int count) {
   return population;
 }
 
-BareSurface surface_of_ball() { return BareSurface(bare_body(testing::sphere_recipe(1.0))); }
+BareSurface ball_surface() { return BareSurface(bare_body(testing::sphere_recipe(1.0))); }
 
 // The weight t^2 of places on the unit sphere, with t from 0 at the south pole to 1 at the north pole.
 float northern_weight(const Vec3d& p) {
@@ -79,14 +79,14 @@ void expect_northern(const std::vector<DrawnLandform>& landforms, double number)
 }
 
 TEST(PopulationPlaces, CountsFollowTheWeight) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const auto landforms = draw_population(counted(20000), surface, 1, 0, "r", {northern_weight});
   ASSERT_EQ(landforms.size(), 20000u);
   expect_northern(landforms, 20000.0 * 3.0);  // the weight is 1/3 on average
 }
 
 TEST(PopulationPlaces, DensitiesAreThinnedByTheWeight) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   Population population = sizes_between(0.01, 0.02, 2.0);
   population.density = 5000.0;
   const double number = 5000.0 * surface.area();
@@ -97,16 +97,16 @@ TEST(PopulationPlaces, DensitiesAreThinnedByTheWeight) {
 
 // A weight of 1 everywhere changes no size: diameters and places have random numbers of their own.
 TEST(PopulationPlaces, WeightsChangeNoSize) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const auto plain = draw_population(counted(50), surface, 1, 0, "r");
   const auto weighted = draw_population(counted(50), surface, 1, 0, "r", {northern_weight});
   for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(plain[i].diameter, weighted[i].diameter);
 }
 
 TEST(PopulationPlaces, WeightsOfNothingAreRefused) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const auto nowhere = [](const Vec3d&) { return 0.0f; };
-  EXPECT_TRUE(testing::has(testing::refusal_of([&] {
+  EXPECT_TRUE(testing::has(testing::refusal_text([&] {
                              draw_population(counted(5), surface, 1, 0, "recipe: layers[0].population",
                                              {nowhere});
                            }),
@@ -114,7 +114,7 @@ TEST(PopulationPlaces, WeightsOfNothingAreRefused) {
 }
 
 TEST(PopulationPlaces, ProgressStopsTheSearch) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   DrawingPlaces places{northern_weight};
   places.progress = [](double, std::string_view) { return false; };
   EXPECT_THROW(draw_population(counted(5), surface, 1, 0, "r", places), WorkError);
@@ -122,7 +122,7 @@ TEST(PopulationPlaces, ProgressStopsTheSearch) {
 
 // Landforms of one cluster lie about its centre with the stated standard deviation along each tangent.
 TEST(PopulationPlaces, ClustersHaveTheirRadius) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   Population population = counted(4000);
   population.clusters = Clusters{1, 0.05, 1.0};
   const auto landforms = draw_population(population, surface, 5, 0, "r");
@@ -137,7 +137,7 @@ TEST(PopulationPlaces, ClustersHaveTheirRadius) {
 // Half of the landforms lie in clusters, and the other half anywhere: counts in cells vary by more than
 // chance, and the share far from all clusters is that of the others.
 TEST(PopulationPlaces, ClustersTakeTheirShare) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   Population population = counted(4000);
   population.clusters = Clusters{1, 0.05, 0.25};
   const auto landforms = draw_population(population, surface, 6, 0, "r");
@@ -155,7 +155,7 @@ TEST(PopulationPlaces, ClustersTakeTheirShare) {
 // The quantiles of the drawn sizes are uniform (Kolmogorov and Smirnov), and the likelihood of a shape is
 // greatest near the true one.
 TEST(PopulationPlaces, WeibullSizesAreRecovered) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   for (const double shape : {0.33, 0.8, 2.0}) {
     Population population = counted(5000);
     population.least_diameter = 0.05;
@@ -204,7 +204,7 @@ Population by_cells(double density, double least, double greatest, double expone
 }
 
 TEST(PopulationByCells, HasItsDensityEverywhere) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const double number = 1600.0 * 4.0 * std::numbers::pi;
   const auto landforms = draw_population(by_cells(1600.0, 0.004, 0.06, 2.0), surface, 2, 0, "r");
   EXPECT_NEAR(static_cast<double>(landforms.size()), number, 4.0 * std::sqrt(number));
@@ -221,7 +221,7 @@ TEST(PopulationByCells, HasItsDensityEverywhere) {
 
 // The exponent by maximum likelihood, of sizes so far apart that the truncation does not matter.
 TEST(PopulationByCells, HasItsExponent) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   for (const double exponent : {2.0, 2.9}) {
     double sum = 0.0, n = 0.0;
     for (const DrawnLandform& f :
@@ -238,7 +238,7 @@ TEST(PopulationByCells, HasItsExponent) {
 // meet those of a layer with another seed: here the places of one have the numbers of another's sizes if a
 // key is the sum of a purpose and the layer.
 TEST(PopulationPlaces, LayersWithSeedsShareNoNumbers) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const PlaceWeight everywhere = [](const Vec3d&) { return 1.0f; };
   surface.area();
   for (const int apart : {199936, 218430208 - 199936, 218430208}) {
@@ -248,15 +248,16 @@ TEST(PopulationPlaces, LayersWithSeedsShareNoNumbers) {
     const auto one = drawn(77), other = drawn(77 + apart);
     ASSERT_EQ(one.size(), other.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
-      CounterRandom of_size = one[i].random;
-      const double u = share_below(counted(1), one[i].diameter), v = of_size.uniform(), w = of_size.uniform();
+      CounterRandom size_random = one[i].random;
+      const double u = share_below(counted(1), one[i].diameter), v = size_random.uniform(),
+                   w = size_random.uniform();
       EXPECT_GT(norm(surface.place({u, v, w}) - other[i].position), 1e-6) << apart;
     }
   }
 }
 
 TEST(PopulationByCells, FollowsTheWeight) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const auto landforms =
       draw_population(by_cells(5000.0, 0.004, 0.03, 2.0), surface, 3, 0, "r", {northern_weight});
   expect_northern(landforms, 5000.0 * 4.0 * std::numbers::pi);
@@ -270,7 +271,7 @@ bool same(const DrawnLandform& a, const DrawnLandform& b) {
 // Layers lift the ground along normals: a small region far above the bare surface is not that of all ground
 // within its height.
 TEST(PopulationByCells, LiftedRegionsDrawWhatLiesBelowThem) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const Population population = by_cells(3000.0, 0.003, 0.05, 2.2);
   const double lift = 0.4;
   const Vec3d center = (1.0 + lift) * normalized(Vec3d{0.3, -0.5, 0.8});
@@ -292,7 +293,7 @@ TEST(PopulationByCells, LiftedRegionsDrawWhatLiesBelowThem) {
 
 // A region draws exactly the landforms of the whole body that matter to it, in their order.
 TEST(PopulationByCells, RegionsDrawTheirOwn) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const Population population = by_cells(3000.0, 0.003, 0.05, 2.2);
   const auto all = draw_population(population, surface, 7, 2, "r");
   const Vec3d center = normalized(Vec3d{0.3, -0.5, 0.8});
@@ -313,7 +314,7 @@ TEST(PopulationByCells, RegionsDrawTheirOwn) {
 }
 
 TEST(PopulationByCells, FinerSizesChangeNoCoarserOnes) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const Population coarse = by_cells(1000.0, 0.011, 0.05, 2.0);
   Population fine = coarse;
   fine.least_diameter = 0.003;
@@ -330,7 +331,7 @@ TEST(PopulationByCells, FinerSizesChangeNoCoarserOnes) {
 
 // A whole body gets the largest 2e5 landforms at most, and says what it lacks.
 TEST(PopulationByCells, WholeBodiesLeaveOutTheFinest) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   const Population population = by_cells(1e5, 0.001, 0.03, 3.0);
   const SizesByCells whole = sizes_by_cells(population, surface, true);
   const auto landforms = draw_population(population, surface, 1, 0, "r");
@@ -346,7 +347,7 @@ TEST(PopulationByCells, WholeBodiesLeaveOutTheFinest) {
 }
 
 TEST(PopulationByCells, LargeLandformsAreRefused) {
-  const BareSurface surface = surface_of_ball();
+  const BareSurface surface = ball_surface();
   EXPECT_THROW(draw_population(by_cells(1.0, 0.01, 0.1, 2.0), surface, 1, 0, "r"), InputError);
 }
 

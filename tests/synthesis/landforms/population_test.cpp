@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-Population population_of(int count, double least, double greatest, double exponent) {
+Population make_population(int count, double least, double greatest, double exponent) {
   Population population;
   population.count = count;
   population.least_diameter = least;
@@ -44,7 +44,7 @@ TEST(Population, ExponentsAreRecovered) {
   const BareSurface surface(bare_body(testing::sphere_recipe(10.0)));
   for (const double exponent : {1.5, 2.0, 2.65, 3.25}) {
     for (const double greatest : {0.2, 5.0}) {
-      const Population population = population_of(5000, 0.1, greatest, exponent);
+      const Population population = make_population(5000, 0.1, greatest, exponent);
       std::vector<double> diameters;
       for (const DrawnLandform& f : draw_population(population, surface, 3, 0, "r")) {
         ASSERT_TRUE(f.diameter >= 0.1 && f.diameter <= greatest);
@@ -58,7 +58,7 @@ TEST(Population, ExponentsAreRecovered) {
 
 TEST(Population, NumbersOfADensityArePoissonDistributed) {
   const BareSurface surface(bare_body(testing::sphere_recipe(1.0)));
-  Population population = population_of(0, 0.1, 0.2, 2.0);
+  Population population = make_population(0, 0.1, 0.2, 2.0);
   population.count.reset();
   population.density = 9.0 / (4.0 * std::numbers::pi);
   const int seeds = 400;
@@ -95,7 +95,7 @@ TEST(Population, PlacesAreUniformOverTheArea) {
   EXPECT_NEAR(surface.area(), 0.5 * area, 1e-3 * area);
   int seen = 0, upper = 0;
   const int n = 20000;
-  for (const DrawnLandform& f : draw_population(population_of(n, 0.1, 0.2, 2.0), surface, 9, 0, "r")) {
+  for (const DrawnLandform& f : draw_population(make_population(n, 0.1, 0.2, 2.0), surface, 9, 0, "r")) {
     ASSERT_NEAR(field.value(f.position), 0.0, 1e-5);
     seen += f.position.x > 1.0;
     upper += f.position.z > 0.0;
@@ -112,7 +112,7 @@ TEST(Population, PlacesAreIndependent) {
   const double mean = 20.0;
   std::vector<double> counts(kRings * kSectors);
   for (const DrawnLandform& f : draw_population(
-           population_of(static_cast<int>(mean) * kRings * kSectors, 0.1, 0.2, 2.0), surface, 4, 2, "r")) {
+           make_population(static_cast<int>(mean) * kRings * kSectors, 0.1, 0.2, 2.0), surface, 4, 2, "r")) {
     const int ring = std::min(kRings - 1, static_cast<int>((f.position.z + 1.0) / 2.0 * kRings));
     const double turn = std::atan2(f.position.y, f.position.x) / (2.0 * std::numbers::pi) + 0.5;
     ++counts[static_cast<std::size_t>(std::max(ring, 0) * kSectors +
@@ -126,8 +126,8 @@ TEST(Population, PlacesAreIndependent) {
 
 TEST(Population, FeaturesKeepTheirPlacesWhenMoreAreDrawn) {
   const BareSurface surface(bare_body(testing::sphere_recipe(1.0)));
-  const auto few = draw_population(population_of(10, 0.1, 0.2, 2.0), surface, 1, 0, "r");
-  const auto many = draw_population(population_of(100, 0.1, 0.2, 2.0), surface, 1, 0, "r");
+  const auto few = draw_population(make_population(10, 0.1, 0.2, 2.0), surface, 1, 0, "r");
+  const auto many = draw_population(make_population(100, 0.1, 0.2, 2.0), surface, 1, 0, "r");
   for (std::size_t i = 0; i < few.size(); ++i) {
     EXPECT_EQ(few[i].position, many[i].position);
     EXPECT_EQ(few[i].diameter, many[i].diameter);
@@ -136,10 +136,10 @@ TEST(Population, FeaturesKeepTheirPlacesWhenMoreAreDrawn) {
 
 TEST(Population, AbsurdDensitiesAreRefused) {
   const BareSurface surface(bare_body(testing::sphere_recipe(1000.0)));
-  Population population = population_of(0, 0.1, 0.2, 2.0);
+  Population population = make_population(0, 0.1, 0.2, 2.0);
   population.count.reset();
   population.density = 100.0;
-  EXPECT_TRUE(testing::has(testing::refusal_of([&] {
+  EXPECT_TRUE(testing::has(testing::refusal_text([&] {
                              draw_population(population, surface, 1, 0, "recipe: layers[0].population");
                            }),
                            "population.density: would draw 1.26e+09"));

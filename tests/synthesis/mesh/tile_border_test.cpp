@@ -30,7 +30,7 @@ Pyramid pyramid(float apex) {
   return p;
 }
 
-std::optional<TileFigures> border_of(const Pyramid& pyramid, bool above) {
+std::optional<TileFigures> find_border(const Pyramid& pyramid, bool above) {
   TileBorder border(above ? std::optional(0.0f) : std::nullopt, above ? std::nullopt : std::optional(0.0f));
   border.add_vertices(pyramid.vertices);
   border.add_triangles(pyramid.triangles);
@@ -39,7 +39,7 @@ std::optional<TileFigures> border_of(const Pyramid& pyramid, bool above) {
 
 TEST(TileBorder, TwoPyramidsFit) {
   const Pyramid above = pyramid(1.0f), below = pyramid(-2.0f);
-  const TileFigures a = *border_of(above, true), b = *border_of(below, false);
+  const TileFigures a = *find_border(above, true), b = *find_border(below, false);
   EXPECT_EQ(*a.lower, *b.upper);
   EXPECT_EQ(a.lower->vertices, 4);
   EXPECT_EQ(a.lower->loops, 1);
@@ -51,29 +51,29 @@ TEST(TileBorder, TwoPyramidsFit) {
   for (Triangle& t : turned.triangles) {
     for (std::uint32_t& v : t) v = v == 4 ? 4 : (v + 1) % 4;
   }
-  EXPECT_EQ(*border_of(turned, false)->upper, *a.lower);
+  EXPECT_EQ(*find_border(turned, false)->upper, *a.lower);
 }
 
 TEST(TileBorder, OtherPlacesOtherEdgesAndTheOtherOrientationDoNotFit) {
-  const TileSide good = *border_of(pyramid(1.0f), true)->lower;
+  const TileSide good = *find_border(pyramid(1.0f), true)->lower;
   Pyramid moved = pyramid(-1.0f);
   moved.vertices[2].position.y = float_behind(moved.vertices[2].position.y);
-  EXPECT_NE(*border_of(moved, false)->upper, good);
+  EXPECT_NE(*find_border(moved, false)->upper, good);
   Pyramid crossed = pyramid(-1.0f);
   std::swap(crossed.vertices[1], crossed.vertices[2]);
-  EXPECT_NE(*border_of(crossed, false)->upper, good);
+  EXPECT_NE(*find_border(crossed, false)->upper, good);
   Pyramid flipped = pyramid(-1.0f);
   for (Triangle& t : flipped.triangles) std::swap(t[0], t[1]);
-  EXPECT_NE(*border_of(flipped, false)->upper, good);
+  EXPECT_NE(*find_border(flipped, false)->upper, good);
 }
 
 TEST(TileBorder, BordersThatAreNoLoopsHaveNoFigures) {
   Pyramid cut = pyramid(1.0f);
   cut.triangles.pop_back();
-  EXPECT_FALSE(border_of(cut, true));
+  EXPECT_FALSE(find_border(cut, true));
   Pyramid twice = pyramid(1.0f);
   twice.triangles.push_back(twice.triangles[0]);
-  EXPECT_FALSE(border_of(twice, true));
+  EXPECT_FALSE(find_border(twice, true));
   Pyramid touching = pyramid(1.0f);  // a second pyramid that shares vertex 0 with the first
   for (int k = 1; k < 4; ++k) touching.vertices.push_back(touching.vertices[static_cast<std::size_t>(k)]);
   touching.vertices.push_back({{0.0f, 0.0f, 3.0f}, {}});
@@ -82,7 +82,7 @@ TEST(TileBorder, BordersThatAreNoLoopsHaveNoFigures) {
     const Triangle t = touching.triangles[k];
     touching.triangles.push_back({second(t[0]), second(t[1]), second(t[2])});
   }
-  EXPECT_FALSE(border_of(touching, true));
+  EXPECT_FALSE(find_border(touching, true));
 }
 
 // Vertices that rounding put at one place are still vertices of their own.
@@ -90,8 +90,8 @@ TEST(TileBorder, VerticesAtOnePlaceAreTold) {
   Pyramid above = pyramid(1.0f), below = pyramid(-1.0f);
   above.vertices[1] = above.vertices[0];
   below.vertices[1] = below.vertices[0];
-  EXPECT_EQ(*border_of(above, true)->lower, *border_of(below, false)->upper);
-  EXPECT_EQ(border_of(above, true)->lower->vertices, 4);
+  EXPECT_EQ(*find_border(above, true)->lower, *find_border(below, false)->upper);
+  EXPECT_EQ(find_border(above, true)->lower->vertices, 4);
 }
 
 }  // namespace

@@ -49,9 +49,9 @@ TEST(WorleyNoise, HasTheStatedRangesMeansAndDeviations) {
     EXPECT_NEAR(s.deviation, deviation, 0.001);
   };
   const double f1 = kWorleyMeanF1, f2 = kWorleyMeanF2;
-  expect(testing::statistics_of(worley_f1, n), f1, 0.149);
-  expect(testing::statistics_of(worley_f2, n), f2, 0.119);
-  expect(testing::statistics_of(worley_f2_minus_f1, n), f2 - f1, 0.148);
+  expect(testing::noise_statistics(worley_f1, n), f1, 0.149);
+  expect(testing::noise_statistics(worley_f2, n), f2, 0.119);
+  expect(testing::noise_statistics(worley_f2_minus_f1, n), f2 - f1, 0.148);
 }
 
 TEST(WorleyNoise, ChangesNoFasterThanDistances) {

@@ -85,7 +85,7 @@ struct GradientNoise {
 class GradientNoises : public ::testing::TestWithParam<GradientNoise> {};
 
 TEST_P(GradientNoises, HaveTheStatedRangeMeanAndDeviation) {
-  const testing::NoiseStatistics s = testing::statistics_of(GetParam().value, 1000000);
+  const testing::NoiseStatistics s = testing::noise_statistics(GetParam().value, 1000000);
   EXPECT_GE(s.least, -1.0);
   EXPECT_LE(s.greatest, 1.0);
   EXPECT_GT(s.greatest, GetParam().greatest);

@@ -121,7 +121,7 @@ RandomPhaseLayer phase_layer(double randomness) {
   return layer;
 }
 
-std::span<const Wave> waves_of(const LoneNoise<RandomPhaseNoise>& noise) {
+std::span<const Wave> find_waves(const LoneNoise<RandomPhaseNoise>& noise) {
   return noise.arrays().span(noise.noise().waves);
 }
 
@@ -202,7 +202,7 @@ TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
   RandomPhaseLayer layer = phase_layer(0.0);
   layer.waves = 1;
   const LoneNoise<RandomPhaseNoise> noise(layer, 5, 0, kPhaseDomain);
-  const Wave& wave = waves_of(noise)[0];
+  const Wave& wave = find_waves(noise)[0];
   CounterRandom random(2);
   // Dividing by the sum of the windows, between 1 and sqrt 8, leaves exactly the wave.
   for (int i = 0; i < 200; ++i) {
@@ -219,11 +219,11 @@ TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
   layer.spread = 0.1;
   layer.direction = {0, -3, 0};
   const LoneNoise<RandomPhaseNoise> noise(layer, 1, 0, kPhaseDomain);
-  ASSERT_EQ(waves_of(noise).size(), 12u);
+  ASSERT_EQ(find_waves(noise).size(), 12u);
   double variance = 0.0;
   const auto length = [](const Wave& w) { return norm(Vec3d{w.frequency.x, w.frequency.y, w.frequency.z}); };
-  const double first = length(waves_of(noise)[0]) * double{waves_of(noise)[0].amplitude};
-  for (const Wave& w : waves_of(noise)) {
+  const double first = length(find_waves(noise)[0]) * double{find_waves(noise)[0].amplitude};
+  for (const Wave& w : find_waves(noise)) {
     EXPECT_NEAR(length(w) * double{w.amplitude}, first, 1e-5);
     EXPECT_GE(-double{w.frequency.y} / length(w), 0.9 - 1e-6);
     variance += 0.5 * double{w.amplitude} * double{w.amplitude};

@@ -43,8 +43,8 @@ TEST_F(ImageFile, BytesComeBack) {
 }
 
 // The words of a PNG of 16 bits, which must be big-endian, in rows of so many words.
-std::vector<int> words_of(const std::filesystem::path& file, int color_type, std::size_t rows,
-                          std::size_t words) {
+std::vector<int> read_rows(const std::filesystem::path& file, int color_type, std::size_t rows,
+                           std::size_t words) {
   std::FILE* in = std::fopen(file.c_str(), "rb");
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
@@ -66,9 +66,9 @@ TEST_F(ImageFile, SixteenBitsAreBigEndianAndExact) {
   const std::vector<std::uint16_t> values{0, 1, 256, 32768, 65535, 4660};
   const std::vector<int> expected(values.begin(), values.end());
   write_png16_grey(values, 2, 3, file_);
-  EXPECT_EQ(words_of(file_, PNG_COLOR_TYPE_GRAY, 3, 2), expected);
+  EXPECT_EQ(read_rows(file_, PNG_COLOR_TYPE_GRAY, 3, 2), expected);
   write_png16_rgb(values, 2, 1, file_);
-  EXPECT_EQ(words_of(file_, PNG_COLOR_TYPE_RGB, 1, 6), expected);
+  EXPECT_EQ(read_rows(file_, PNG_COLOR_TYPE_RGB, 1, 6), expected);
 }
 
 TEST_F(ImageFile, FloatsComeBackBitForBit) {
@@ -90,7 +90,7 @@ TEST_F(ImageFile, SameImageSameBytes) {
   const std::vector<std::uint16_t> grey(64 * 64, 1234);
   write_png16_grey(grey, 64, 64, folder_ / "a.png");
   write_png16_grey(grey, 64, 64, folder_ / "b.png");
-  EXPECT_EQ(testing::text_of(folder_ / "a.png"), testing::text_of(folder_ / "b.png"));
+  EXPECT_EQ(testing::read_text(folder_ / "a.png"), testing::read_text(folder_ / "b.png"));
 }
 
 TEST_F(ImageFile, WrongSizesAndFoldersLeaveNothingBehind) {
@@ -104,7 +104,7 @@ TEST_F(ImageFile, WrongSizesAndFoldersLeaveNothingBehind) {
 
 // A map of heights f(x, y) in length units at pixel centres.
 template <class Heights>
-std::vector<float> map_of(int width, int height, const Heights& f) {
+std::vector<float> make_map(int width, int height, const Heights& f) {
   std::vector<float> values;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) values.push_back(static_cast<float>(f(x, y)));
@@ -116,7 +116,7 @@ std::vector<float> map_of(int width, int height, const Heights& f) {
 TEST(SurfaceMaps, NormalsOfAPlaneAreThatOfItsSlopes) {
   const double pixel = 0.01;
   const std::vector<float> heights =
-      map_of(40, 30, [=](int x, int y) { return pixel * (0.5 * x - 0.25 * y); });
+      make_map(40, 30, [=](int x, int y) { return pixel * (0.5 * x - 0.25 * y); });
   const std::vector<float> normals = normal_map({heights, 40, 30, pixel, false});
   const double length = std::sqrt(1.0 + 0.25 + 0.0625);
   for (std::size_t i = 0; i < normals.size(); i += 3) {
@@ -132,8 +132,8 @@ TEST(SurfaceMaps, ARepeatingMapIsMovedWithoutAChange) {
     return 3.0 * std::sin(2.0 * std::numbers::pi * x / 32.0) +
            2.0 * std::cos(2.0 * std::numbers::pi * y / 32.0);
   };
-  const std::vector<float> a = map_of(32, 32, wave),
-                           b = map_of(32, 32, [&](int x, int y) { return wave((x + 16) % 32, y); });
+  const std::vector<float> a = make_map(32, 32, wave),
+                           b = make_map(32, 32, [&](int x, int y) { return wave((x + 16) % 32, y); });
   const std::vector<float> na = normal_map({a, 32, 32, 1.0, true}), nb = normal_map({b, 32, 32, 1.0, true}),
                            oa = occlusion_map({a, 32, 32, 1.0, true}),
                            ob = occlusion_map({b, 32, 32, 1.0, true});
@@ -157,7 +157,7 @@ TEST(SurfaceMaps, OpenGroundIsNotOccluded) {
 TEST(SurfaceMaps, AGrooveHidesAsMuchSkyAsItsHorizonSays) {
   const double t = 0.8, pixel = 0.1;
   const std::vector<float> heights =
-      map_of(257, 257, [=](int x, int) { return t * pixel * std::abs(x - 128); });
+      make_map(257, 257, [=](int x, int) { return t * pixel * std::abs(x - 128); });
   const std::vector<float> open = occlusion_map({heights, 257, 257, pixel, false});
   double expected = 0.0;
   for (int k = 0; k < kOcclusionAzimuths; ++k) {
@@ -169,7 +169,7 @@ TEST(SurfaceMaps, AGrooveHidesAsMuchSkyAsItsHorizonSays) {
 }
 
 TEST(SurfaceMaps, HaveTheSameBytesForOneThreadAndForMany) {
-  const std::vector<float> heights = map_of(150, 90, [](int x, int y) { return (x * 37 + y * 91) % 29; });
+  const std::vector<float> heights = make_map(150, 90, [](int x, int y) { return (x * 37 + y * 91) % 29; });
   const auto maps = [&](int threads) {
     const ThreadLimit limit(threads);
     std::vector<float> both = normal_map({heights, 150, 90, 2.0, true});

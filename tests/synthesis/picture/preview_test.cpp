@@ -218,7 +218,7 @@ TEST(PictureMarks, RangesAreThePercentilesOfFiniteValues) {
 }
 
 // The middle of the pixels in which two pictures of one size differ, from the upper left corner.
-Vec3d middle_of_changes(const RgbaImage16& a, const RgbaImage16& b) {
+Vec3d change_middle(const RgbaImage16& a, const RgbaImage16& b) {
   Vec3d sum;
   double count = 0.0;
   for (std::size_t i = 0; i < a.pixels.size(); i += 4) {
@@ -240,7 +240,7 @@ TEST(PictureMarks, LabelsFollowTheirPlaces) {
     options.marks.labels.clear();
     const RgbaImage16 without = render_picture(mesh, options).image;
     options.marks.labels = {{mesh.vertices[4], "9"}};
-    return middle_of_changes(render_picture(mesh, options).image, without);
+    return change_middle(render_picture(mesh, options).image, without);
   };
   for (const std::string kind : {"", " fov 20"}) {
     const std::string above = "from 0 0 1 up 0 1 0" + kind;

@@ -40,9 +40,9 @@ struct Continued {
 };
 
 // Points of the bare surface, but for some micrometres.
-std::vector<Vec3d> points_of_body(const Recipe& recipe) {
+std::vector<Vec3d> body_points(const Recipe& recipe) {
   std::vector<Vec3d> points;
-  for (const ReliefPlace& p : testing::places_of(recipe, 0.4 * kLevelSpacing)) {
+  for (const ReliefPlace& p : testing::find_places(recipe, 0.4 * kLevelSpacing)) {
     points.push_back(testing::position(p, 0.4 * kLevelSpacing));
   }
   return points;
@@ -51,7 +51,7 @@ std::vector<Vec3d> points_of_body(const Recipe& recipe) {
 TEST(ReliefLevels, AddStonesOnRoughGroundAlone) {
   const Continued bare(0), continued(2);
   double rough = 0.0, flat = 0.0;
-  for (const Vec3d& p : points_of_body(Continued::recipe(0))) {
+  for (const Vec3d& p : body_points(Continued::recipe(0))) {
     const double added = continued.at(p) - bare.at(p);
     if (p.x > 0.2) rough = std::max(rough, std::fabs(added));
     if (p.x < -0.4) flat = std::max(flat, std::fabs(added));
@@ -64,7 +64,7 @@ TEST(ReliefLevels, AddStonesOnRoughGroundAlone) {
 // What a level adds has no weight in means over an edge of the model.
 TEST(ReliefLevels, AverageOutOverTheModel) {
   const Continued bare(0), continued(3);
-  const std::vector<Vec3d> points = points_of_body(Continued::recipe(0));
+  const std::vector<Vec3d> points = body_points(Continued::recipe(0));
   const double radius = 2.0 * kLevelSpacing;
   double squares = 0.0, squared_means = 0.0;
   int count = 0;
@@ -84,7 +84,7 @@ TEST(ReliefLevels, AverageOutOverTheModel) {
 
 TEST(ReliefLevels, HaveTheBitsOfOnePointInABatch) {
   const Continued continued(3);
-  const std::vector<Vec3d> points = points_of_body(Continued::recipe(0));
+  const std::vector<Vec3d> points = body_points(Continued::recipe(0));
   std::vector<float> x, y, z;
   for (std::size_t i = 0; i < points.size(); i += 7) {
     const Vec3f p = to_float(points[i]);
@@ -103,7 +103,7 @@ TEST(ReliefLevels, HaveTheBitsOfOnePointInABatch) {
 TEST(ReliefLevels, StayWithinTheBoundsOfTheNoise) {
   const Continued continued(2);
   const Vec3d half{0.01, 0.01, 0.01};
-  for (const Vec3d& p : points_of_body(Continued::recipe(0))) {
+  for (const Vec3d& p : body_points(Continued::recipe(0))) {
     const Interval bound = bound_heights(continued.noise, continued.arrays(), Box{p - half, p + half});
     const double height = continued.at(p);
     ASSERT_TRUE(height >= bound.low && height <= bound.high);
@@ -115,7 +115,7 @@ TEST(ReliefLevels, StayWithinTheBoundsOfTheNoise) {
 TEST(ReliefLevels, AddNothingToAnEvenRelief) {
   const auto even = [](const Vec3d&) { return 0.004; };
   const Continued bare(0, even), continued(2, even);
-  for (const Vec3d& p : points_of_body(Continued::recipe(0))) ASSERT_NEAR(continued.at(p), bare.at(p), 1e-9);
+  for (const Vec3d& p : body_points(Continued::recipe(0))) ASSERT_NEAR(continued.at(p), bare.at(p), 1e-9);
 }
 
 TEST(ReliefTexture, RepeatsAndHasNoMean) {
@@ -123,7 +123,7 @@ TEST(ReliefTexture, RepeatsAndHasNoMean) {
   ArrayStore arrays;
   const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
-  const std::vector<ReliefPlace> places = testing::places_of(recipe, kLevelSpacing);
+  const std::vector<ReliefPlace> places = testing::find_places(recipe, kLevelSpacing);
   std::vector<double> heights;
   for (const ReliefPlace& p : places) heights.push_back(half_rough(testing::position(p, kLevelSpacing)));
   const ReliefTiles tiles = make_relief_tiles(places, "test");

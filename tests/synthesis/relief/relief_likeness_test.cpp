@@ -15,7 +15,7 @@
 namespace astrolith {
 namespace {
 
-using testing::places_of;
+using testing::find_places;
 using testing::position;
 using testing::potato_recipe;
 
@@ -28,7 +28,7 @@ struct Rough {
   BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
   BodyGround ground{body, arrays.view(), metaballs.lists()};
-  std::vector<ReliefPlace> places = places_of(recipe, kSpacing);
+  std::vector<ReliefPlace> places = find_places(recipe, kSpacing);
   ReliefTiles tiles = make_relief_tiles(places, "test");
   std::vector<double> heights;
 
@@ -141,7 +141,7 @@ TEST(ReliefLikeness, KeepsAConstantHeightOnABaseWithoutBends) {
 TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
   const Rough rough;
   Recipe ball = testing::sphere_recipe(0.4);
-  const std::vector<ReliefPlace> places = places_of(ball, kSpacing);
+  const std::vector<ReliefPlace> places = find_places(ball, kSpacing);
   const ReliefTiles tiles = make_relief_tiles(places, "test");
   const std::vector<double> heights =
       like_heights(places, tiles, rough.patches(), true, kSpacing, {}, "test");
@@ -157,18 +157,18 @@ TEST(ReliefLikeness, HasNoHeightsOnABodySmallerThanTheSpacing) {
 
 TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {
   const Rough rough;
-  std::vector<double> of_one;
+  std::vector<double> single_heights;
   {
     const ThreadLimit limit(1);
-    of_one = rough.like(1);
+    single_heights = rough.like(1);
   }
   const ThreadLimit limit(3);
-  EXPECT_EQ(rough.like(1), of_one);
+  EXPECT_EQ(rough.like(1), single_heights);
 }
 
 TEST(ReliefLikeness, RefusesABodyOfFewPatches) {
   const Rough rough;
-  const std::string refused = testing::refusal_of([&] { rough.like(1, 0.1); });
+  const std::string refused = testing::refusal_text([&] { rough.like(1, 0.1); });
   EXPECT_TRUE(testing::has(refused, "test: the body has room for 4 patches of its relief"));
 }
 

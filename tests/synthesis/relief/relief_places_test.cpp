@@ -11,14 +11,14 @@
 namespace astrolith {
 namespace {
 
-using testing::places_of;
+using testing::find_places;
 using testing::position;
 using testing::potato_recipe;
 using testing::sphere_recipe;
 
 TEST(ReliefPlaces, LieOnTheBallWithItsNormals) {
   const double spacing = 0.037;
-  const std::vector<ReliefPlace> places = places_of(sphere_recipe(1.0), spacing);
+  const std::vector<ReliefPlace> places = find_places(sphere_recipe(1.0), spacing);
   // A line of every axis crosses the ball twice; crossings with n_a^2 <= 1/5 are left out: a share of 1/5 of
   // the disc.
   const double expected = 3 * 2 * 3.14159265 * (1.0 - kLeastReliefSlant) / (spacing * spacing);
@@ -38,7 +38,7 @@ TEST(ReliefPlaces, AreTheSameForAnyThreadCount) {
   std::vector<ReliefPlace> places[2];
   for (const int threads : {1, 3}) {
     const ThreadLimit limit(threads);
-    places[threads / 3] = places_of(potato, 0.02);
+    places[threads / 3] = find_places(potato, 0.02);
   }
   ASSERT_EQ(places[0].size(), places[1].size());
   for (std::size_t i = 0; i < places[0].size(); ++i) {
@@ -48,7 +48,7 @@ TEST(ReliefPlaces, AreTheSameForAnyThreadCount) {
 }
 
 TEST(ReliefPlaces, HaveAPixelEach) {
-  const std::vector<ReliefPlace> places = places_of(potato_recipe(60, 5), 0.02);
+  const std::vector<ReliefPlace> places = find_places(potato_recipe(60, 5), 0.02);
   const ReliefLayout layout = relief_layout(places);
   const std::set<std::uint32_t> pixels(layout.pixels.begin(), layout.pixels.end());
   EXPECT_EQ(pixels.size(), places.size());
@@ -57,7 +57,7 @@ TEST(ReliefPlaces, HaveAPixelEach) {
 
 // Every place serves the tiles of all cells whose points lie within two lines of it on its sheet.
 TEST(ReliefTiles, HoldEveryPlace) {
-  const std::vector<ReliefPlace> places = places_of(potato_recipe(60, 5), 0.02);
+  const std::vector<ReliefPlace> places = find_places(potato_recipe(60, 5), 0.02);
   const ReliefTiles tiles = make_relief_tiles(places, "test");
   std::vector<int> uses(places.size(), 0);
   for (const std::uint32_t place : tiles.places) {
@@ -67,7 +67,7 @@ TEST(ReliefTiles, HoldEveryPlace) {
 }
 
 TEST(ReliefPlaces, RefuseASpacingThatIsTooSmall) {
-  EXPECT_THROW(places_of(sphere_recipe(1.0), 1e-7), InputError);
+  EXPECT_THROW(find_places(sphere_recipe(1.0), 1e-7), InputError);
 }
 
 }  // namespace

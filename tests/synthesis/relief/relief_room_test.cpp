@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-using testing::places_of;
+using testing::find_places;
 
 // A body with the places of a relief.
 struct Ground {
@@ -20,7 +20,7 @@ struct Ground {
   BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
   BodyGround ground{body, arrays.view(), metaballs.lists()};
-  std::vector<ReliefPlace> places = places_of(recipe, spacing);
+  std::vector<ReliefPlace> places = find_places(recipe, spacing);
   ReliefPoints points{places, spacing};
   std::vector<double> own = std::vector(places.size(), 0.0);
 

@@ -16,7 +16,7 @@ using testing::Outcome;
 const std::string kTrain = "train shapes -o model.yml --points 500 --trees 40 --folds 3 ";
 
 // A mesh of a class, stretched a little and with every vertex moved a little.
-TriangleMesh shape_of(const std::string& kind, std::uint64_t seed) {
+TriangleMesh make_shape(const std::string& kind, std::uint64_t seed) {
   TriangleMesh mesh = kind == "ball" ? testing::icosphere(3) : testing::torus(1, 0.4, 24, 12);
   if (kind == "box") {
     mesh = testing::cube(1.0);
@@ -40,13 +40,13 @@ class Classify : public testing::JobTest {
       const std::string folder = "shapes/" + kind + "/";
       std::filesystem::create_directories(folder_ / folder);
       for (int i = 0; i < 6; ++i)
-        write_mesh(shape_of(kind, ++seed), folder_ / (folder + std::to_string(i) + ".ply"), {});
-      write_mesh(shape_of(kind, ++seed), folder_ / (kind + ".obj"), {});
+        write_mesh(make_shape(kind, ++seed), folder_ / (folder + std::to_string(i) + ".ply"), {});
+      write_mesh(make_shape(kind, ++seed), folder_ / (kind + ".obj"), {});
     }
   }
 };
 
-std::vector<nlohmann::json> lines_of(const std::string& output) {
+std::vector<nlohmann::json> read_lines(const std::string& output) {
   std::vector<nlohmann::json> lines;
   std::istringstream text(output);
   for (std::string line; std::getline(text, line);) lines.push_back(nlohmann::json::parse(line));
@@ -70,7 +70,7 @@ TEST_F(Classify, LearnsClassesAndNamesThem) {
 
   const Outcome said = run("predict model.yml ball.obj box.obj ring.obj shapes/box");
   ASSERT_EQ(said.status, 0) << said.errors;
-  const std::vector<nlohmann::json> lines = lines_of(said.output);
+  const std::vector<nlohmann::json> lines = read_lines(said.output);
   ASSERT_EQ(lines.size(), 9u);
   EXPECT_EQ(lines[0]["mesh"], "ball.obj");
   EXPECT_EQ(lines[0]["class"], "ball");
@@ -85,7 +85,7 @@ TEST_F(Classify, LearnsClassesAndNamesThem) {
 TEST_F(Classify, EveryFeatureKindAndComponents) {
   for (const std::string kind : {"--features ahd --pca 4", "--features d2 --bins 32"}) {
     succeed(kTrain + kind);
-    EXPECT_EQ(lines_of(run("predict model.yml ring.obj").output).at(0)["class"], "ring");
+    EXPECT_EQ(read_lines(run("predict model.yml ring.obj").output).at(0)["class"], "ring");
   }
   succeed("train shapes -o model.yml --features shapedna --eigenvalues 8 --trees 20");
 }
@@ -119,7 +119,7 @@ TEST_F(Classify, NamesUnreadableFilesAndGoesOn) {
   const Outcome said = run("predict model.yml absent.obj ring.obj");
   EXPECT_EQ(said.status, 1);
   EXPECT_TRUE(has(said.errors, "absent.obj"));
-  EXPECT_EQ(lines_of(said.output).size(), 1u);
+  EXPECT_EQ(read_lines(said.output).size(), 1u);
 }
 
 TEST_F(Classify, NamesFilesThatItSkipsAndOpenMeshesThatItTakes) {

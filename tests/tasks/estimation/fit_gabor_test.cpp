@@ -20,7 +20,7 @@ using testing::has;
 // rock.png is smooth noise.
 class FitGabor : public testing::JobTest {
  protected:
-  FitGabor() : JobTest("fit_gabor", testing::job_of(declare_photo_fit, fit_gabor)) {
+  FitGabor() : JobTest("fit_gabor", testing::make_job(declare_photo_fit, fit_gabor)) {
     write("rock.png", testing::noise_png(64));
   }
 
@@ -66,11 +66,11 @@ TEST_F(FitGabor, FitsOnePeriodOfAPhotoThatRepeatsItself) {
   EXPECT_EQ(json("s.json")["period"]["x_px"], 48);
   EXPECT_TRUE(has(succeed("strip.png -o strip.json"),
                   "strip.png: repeats itself every 48 pixels along x; 48 x 48 pixels of it are fitted"));
-  const auto lobes_of = [&](const std::string& name) {
+  const auto fit_lobes = [&](const std::string& name) {
     return std::get<GaborLayer>(read_recipe(folder_ / name).layers[0]).lobes;
   };
-  EXPECT_FALSE(lobes_of("rock.json").empty());
-  EXPECT_EQ(lobes_of("rock.json").size(), lobes_of("strip.json").size());
+  EXPECT_FALSE(fit_lobes("rock.json").empty());
+  EXPECT_EQ(fit_lobes("rock.json").size(), fit_lobes("strip.json").size());
   EXPECT_FALSE(has(succeed("rock.png -o rock.json"), "repeats itself"));
 }
 

@@ -30,7 +30,7 @@ class FitPopulation : public testing::JobTest {
            spheres + "}, \"layers\": []}";
   }
   Outcome synth(const std::string& line) const {
-    return testing::run_job("synth", declare_synth, testing::words_of(line), folder_.path());
+    return testing::run_job("synth", declare_synth, testing::split_words(line), folder_.path());
   }
 };
 
@@ -113,19 +113,19 @@ TEST_F(FitPopulation, GivesBodiesThatSynthDraws) {
 }
 
 TEST(BodyClasses, FollowFromTheShape) {
-  const auto class_of_spheres = [](std::vector<Sphere> spheres, double exponent) {
+  const auto classify_spheres = [](std::vector<Sphere> spheres, double exponent) {
     Recipe recipe;
     recipe.body = MetaballBody{};
     recipe.body->spheres = std::move(spheres);
     recipe.body->a = recipe.body->b = 2.0;
     recipe.body->blend_exponent = exponent;
     const TriangleMesh mesh = make_coarse_mesh(ImplicitField(recipe), 64);
-    return class_of(shape_features(mesh, body_frame(mesh)));
+    return classify_body(shape_features(mesh, body_frame(mesh)));
   };
-  EXPECT_EQ(class_of_spheres({{{0, 0, 0}, 1}, {{1.7, 0, 0}, 0.8}}, 4.0), BodyClass::kContactBinary);
-  EXPECT_EQ(class_of_spheres({{{0, 0, 0}, 1}, {{0.8, 0, 0}, 1}, {{-0.8, 0, 0}, 1}}, 4.0),
+  EXPECT_EQ(classify_spheres({{{0, 0, 0}, 1}, {{1.7, 0, 0}, 0.8}}, 4.0), BodyClass::kContactBinary);
+  EXPECT_EQ(classify_spheres({{{0, 0, 0}, 1}, {{0.8, 0, 0}, 1}, {{-0.8, 0, 0}, 1}}, 4.0),
             BodyClass::kElongated);
-  EXPECT_EQ(class_of_spheres({{{0, 0, 0}, 1}}, 1.0), BodyClass::kRounded);
+  EXPECT_EQ(classify_spheres({{{0, 0, 0}, 1}}, 1.0), BodyClass::kRounded);
 }
 
 }  // namespace

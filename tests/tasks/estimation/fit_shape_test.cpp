@@ -16,7 +16,7 @@ using testing::has;
 // egg.obj is a slender ellipsoid: its mesh at a fixed number of cells along it has few triangles.
 class FitShape : public testing::JobTest {
  protected:
-  FitShape() : JobTest("fit_shape", testing::job_of(declare_fit_options, fit_shape)) {
+  FitShape() : JobTest("fit_shape", testing::make_job(declare_fit_options, fit_shape)) {
     write("egg.obj", testing::ellipsoid_obj(2.5, 0.7, 0.6, 15, 24));
   }
   std::string fit(const std::string& output, const std::string& more) {

@@ -11,11 +11,11 @@ namespace {
 std::string complaint(const std::string& words) { return relief_spacing_words().complaint(words); }
 
 TEST(ReliefSize, SpacingsAreInTheUnitThatTheyState) {
-  EXPECT_EQ(relief_spacing_of("auto", "km", 0.25), 0.0);
-  EXPECT_EQ(relief_spacing_of("2.5", "km", 0.25), 2.5);
-  EXPECT_EQ(relief_spacing_of("50m", "km", 0.25), 0.05);
-  EXPECT_EQ(relief_spacing_of("0.5 km", "m", 0.25), 500.0);
-  EXPECT_EQ(relief_spacing_of("3edges", "km", 0.25), 0.75);
+  EXPECT_EQ(parse_relief_spacing("auto", "km", 0.25), 0.0);
+  EXPECT_EQ(parse_relief_spacing("2.5", "km", 0.25), 2.5);
+  EXPECT_EQ(parse_relief_spacing("50m", "km", 0.25), 0.05);
+  EXPECT_EQ(parse_relief_spacing("0.5 km", "m", 0.25), 500.0);
+  EXPECT_EQ(parse_relief_spacing("3edges", "km", 0.25), 0.75);
   for (const char* words : {"auto", "1", "1e-3", "2 edges", "7m"}) EXPECT_EQ(complaint(words), "") << words;
   for (const char* words : {"", "0", "-1m", "nan", "inf", "1e999", "edges", "3 feet", "2  m", "1m "}) {
     EXPECT_NE(complaint(words), "") << words;
@@ -52,10 +52,10 @@ TEST(ReliefSize, HeightsFillTheBytes) {
 
 TEST(ReliefSize, TakesNoMoreBytesThanTheModelGivesReasonFor) {
   const BumpyTarget bumpy;
-  Recipe of_bytes = bumpy.bare, of_model = bumpy.bare;
-  add_relief_within(bumpy.target, 1000000, {}, of_bytes);
-  add_relief(bumpy.target, "auto", {}, of_model);
-  EXPECT_EQ(recipe_to_compact(of_bytes), recipe_to_compact(of_model));
+  Recipe small_recipe = bumpy.bare, model_recipe = bumpy.bare;
+  add_relief_within(bumpy.target, 1000000, {}, small_recipe);
+  add_relief(bumpy.target, "auto", {}, model_recipe);
+  EXPECT_EQ(recipe_to_compact(small_recipe), recipe_to_compact(model_recipe));
 }
 
 TEST(ReliefSize, BytesThatLeaveNoRoomAreRefused) {

@@ -29,7 +29,7 @@ class Gravity : public testing::JobTest {
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return nlohmann::json::parse(outcome.output);
   }
-  std::vector<std::vector<double>> rows_of(const std::string& name) {
+  std::vector<std::vector<double>> read_rows(const std::string& name) {
     std::istringstream table(text(name));
     std::vector<std::vector<double>> rows;
     std::string line;
@@ -74,12 +74,12 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
 }
 
 TEST_F(Gravity, TakesTheUnitThatAFileStates) {
-  const auto mass_of = [&](const std::string& line) {
+  const auto compute_mass = [&](const std::string& line) {
     return gravity(line + " --density 2000 --degree 0")["body"]["mass_kg"].get<double>();
   };
-  const double mass = mass_of("ball.obj");
+  const double mass = compute_mass("ball.obj");
   write("metres.obj", "# length unit: m\n" + ellipsoid_obj(1000, 1000, 1000, 31, 64));
-  EXPECT_NEAR(mass_of("metres.obj"), mass, 1e-6 * mass);
+  EXPECT_NEAR(compute_mass("metres.obj"), mass, 1e-6 * mass);
   EXPECT_EQ(run("metres.obj --density 2000 --degree 0 --unit m").errors, "");
   const Outcome other = run("metres.obj --density 2000 --degree 0 --unit cm --json");
   EXPECT_TRUE(has(other.errors, "note: metres.obj: states its unit as m; taken in cm, as --unit says"));
@@ -103,7 +103,7 @@ TEST_F(Gravity, OfABallThatTurns) {
               std::sqrt(2 * kConstant * mass / 1000), 0.01);
   EXPECT_LE(result["achieved_error"]["largest"].get<double>(), 1e-6);
   EXPECT_NEAR(result["values"]["elevation_m"]["mean"].get<double>(), 0, 1e-9);
-  const auto rows = rows_of("b.csv");
+  const auto rows = read_rows("b.csv");
   ASSERT_EQ(rows.size(), result["facets"].get<std::size_t>());
   ASSERT_EQ(rows[0].size(), 11u);
   for (const auto& row : rows) {
@@ -123,7 +123,7 @@ TEST_F(Gravity, AtPointsOfAFile) {
   write("p.csv", "x,y,z\n# far\n30,0,40\n\n0 0 0\n0, 0, 1\n");
   const auto result = gravity("ball.obj --density 1000 --unit m --points p.csv -o p_out.csv");
   const double mass = result["body"]["mass_kg"].get<double>();
-  const auto rows = rows_of("p_out.csv");
+  const auto rows = read_rows("p_out.csv");
   ASSERT_EQ(rows.size(), 3u);
   ASSERT_EQ(rows[0].size(), 9u);
   EXPECT_NEAR(rows[0][3] / (-kConstant * mass / 50), 1, 1e-4);
@@ -143,7 +143,7 @@ TEST_F(Gravity, AtPointsOfNamedColumns) {
       has(said, "note: named.csv: columns 'x_km', 'y_km', 'z_km' are taken as x, y, z in km; left out: 'id'"))
       << said;
   succeed(line + "plain.csv -o plain_out.csv");
-  const auto named = rows_of("named_out.csv"), plain = rows_of("plain_out.csv");
+  const auto named = read_rows("named_out.csv"), plain = read_rows("plain_out.csv");
   ASSERT_EQ(named.size(), 2u);
   for (std::size_t k = 0; k < plain.size(); ++k) {
     for (std::size_t c = 0; c < 9; ++c) EXPECT_NEAR(named[k][c], plain[k][c], 1e-12 * std::fabs(plain[k][c]));
@@ -159,7 +159,7 @@ TEST_F(Gravity, OfAFarPlaceBesideANearOne) {
     const auto both = gravity("ball.obj --density 2000 --points both.txt -o both.csv" + how),
                alone = gravity("ball.obj --density 2000 --points far.txt -o far.csv" + how);
     const double truth = kConstant * both["body"]["mass_kg"].get<double>() / (4.4e9 * 4.4e9);
-    EXPECT_NEAR(rows_of("both.csv")[1][8] / truth, 1.0, 1e-8);
+    EXPECT_NEAR(read_rows("both.csv")[1][8] / truth, 1.0, 1e-8);
     EXPECT_EQ(text("both.csv").substr(text("both.csv").find("\n4400000,")),
               text("far.csv").substr(text("far.csv").find("\n4400000,")));
     EXPECT_LE(alone["achieved_error"]["largest"], 1e-14);
@@ -278,7 +278,7 @@ TEST_F(Gravity, PartsOfOtherDensities) {
     if (degree == 2 && order > 0) continue;
     EXPECT_NEAR(row[2].get<double>(), degree == 0 ? 1.0 : degree == 1 ? 0.0 : c20, 1e-12) << degree;
   }
-  const auto rows = rows_of("o.csv");
+  const auto rows = read_rows("o.csv");
   ASSERT_EQ(rows.size(), 4u);
   for (const auto& row : rows) {
     double potential = 0;
@@ -348,7 +348,7 @@ TEST_F(Gravity, ARecipeWithAnOriginGivesItsFrameBack) {
   EXPECT_NEAR(figures["body"]["center_of_mass_m"][0], 16500.0, 0.01);
   EXPECT_NEAR(figures["body"]["center_of_mass_m"][2], -2000.0, 0.01);
   const double mass = figures["body"]["mass_kg"];
-  EXPECT_NEAR(rows_of("g.csv")[0][3] / (-kConstant * mass / 100.0), 1.0, 1e-3);
+  EXPECT_NEAR(read_rows("g.csv")[0][3] / (-kConstant * mass / 100.0), 1.0, 1e-3);
 }
 
 TEST_F(Gravity, BadInputIsRefused) {
@@ -412,7 +412,7 @@ TEST_F(Gravity, SitesAreLevelGroundApartFromOneAnother) {
     centers.push_back(center);
   }
   EXPECT_GE(norm(centers[0] - centers[1]), 0.8);
-  EXPECT_EQ(rows_of("s.csv").size(), 2u);
+  EXPECT_EQ(read_rows("s.csv").size(), 2u);
   EXPECT_TRUE(has(outcome.errors, "site 1: slope "));
   EXPECT_TRUE(has(outcome.errors, "synth RECIPE.json --patch " + sites[0]["patch"].get<std::string>()));
   EXPECT_EQ(gravity(line + " --threads 1")["sites"], sites);

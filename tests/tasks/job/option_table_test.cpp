@@ -12,7 +12,7 @@ namespace astrolith {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::refusal_of;
+using testing::refusal_text;
 using testing::ScratchFolder;
 
 TEST(OptionTable, ValuesAreReadAsTheirTypesSay) {
@@ -63,8 +63,8 @@ TEST(OptionTable, NumbersHaveAPointInEveryLocale) {
   OptionTable::set(*options.find("size"), {"+1.5e0"});
   EXPECT_EQ(size, 1.5);
   for (const char* word : {"0,5", "", "+", "0.5x", " 0.5", "+-1", "nan"})
-    EXPECT_NE(refusal_of([&] { OptionTable::set(*options.find("size"), {word}); }), "no error") << word;
-  EXPECT_NE(refusal_of([&] { OptionTable::set(*options.find("size"), {"1e999"}); }).find("double"),
+    EXPECT_NE(refusal_text([&] { OptionTable::set(*options.find("size"), {word}); }), "no error") << word;
+  EXPECT_NE(refusal_text([&] { OptionTable::set(*options.find("size"), {"1e999"}); }).find("double"),
             std::string::npos);
 }
 
@@ -79,7 +79,7 @@ TEST(OptionTable, WrongValuesAreRefusedAndChangeNothing) {
   options.add_option("--kind", kind, "").check(one_of({"a", "b"}));
   options.add_option("--box", box, "").expected(4);
   const auto refused = [&](const char* name, const std::vector<std::string>& words) {
-    return refusal_of([&] { OptionTable::set(*options.find(name), words); });
+    return refusal_text([&] { OptionTable::set(*options.find(name), words); });
   };
   EXPECT_EQ(refused("count", {"0"}), "--count: must be a number between 1 and 100, is 0");
   EXPECT_EQ(refused("count", {"1.5"}), "--count: must be a whole number, is \"1.5\"");
@@ -101,11 +101,11 @@ TEST(OptionTable, OptionsMayNeedAndExcludeOthers) {
   options.add_flag("--second", b, "").needs(first);
   options.add_flag("--third", c, "").excludes(first);
   OptionTable::set(*options.find("second"), {"true"});
-  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "--second requires --first");
+  EXPECT_EQ(refusal_text([&] { options.check_combination(); }), "--second requires --first");
   OptionTable::set(*options.find("first"), {"true"});
-  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "no error");
+  EXPECT_EQ(refusal_text([&] { options.check_combination(); }), "no error");
   OptionTable::set(*options.find("third"), {"true"});
-  EXPECT_EQ(refusal_of([&] { options.check_combination(); }), "--third excludes --first");
+  EXPECT_EQ(refusal_text([&] { options.check_combination(); }), "--third excludes --first");
 }
 
 // A table with an input, two outputs, and an output whose name leads to another file.
@@ -124,7 +124,7 @@ struct Files {
   std::string refused(const std::vector<std::pair<const char*, fs::path>>& names) {
     for (const auto& row : options.rows()) row->words.clear();
     for (const auto& [name, file] : names) OptionTable::set(*options.find(name), {file.string()});
-    return refusal_of([&] { options.check_files(); });
+    return refusal_text([&] { options.check_files(); });
   }
 };
 
@@ -161,8 +161,8 @@ TEST(OptionTable, AFileThatTurnsUpLaterIsKept) {
   folder.write("image.png", "a");
   Files files;
   OptionTable::set(*files.options.find("output"), {(folder / "image.png").string()});
-  EXPECT_NE(refusal_of([&] { files.options.require_not_written((folder / "image.png")); }), "no error");
-  EXPECT_EQ(refusal_of([&] { files.options.require_not_written((folder / "other.png")); }), "no error");
+  EXPECT_NE(refusal_text([&] { files.options.require_not_written((folder / "image.png")); }), "no error");
+  EXPECT_EQ(refusal_text([&] { files.options.require_not_written((folder / "other.png")); }), "no error");
 }
 
 }  // namespace

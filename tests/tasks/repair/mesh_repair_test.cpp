@@ -54,7 +54,7 @@ void expect_body(const MeshRepair& repair, double volume_share = 1e-3) {
 }
 
 std::string refusal(const TriangleMesh& mesh, const RepairOptions& options = {}) {
-  return testing::refusal_of([&] { repaired(mesh, options); });
+  return testing::refusal_text([&] { repaired(mesh, options); });
 }
 
 TEST(MeshRepair, LeavesAClosedBodyAsItIs) {

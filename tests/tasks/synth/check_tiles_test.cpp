@@ -39,7 +39,7 @@ class CheckTiles : public SynthTest {
   }
 
   Outcome check(const std::string& line) const {
-    return testing::run_job("check_tiles", declare_check_tiles, testing::words_of(line), folder_.path());
+    return testing::run_job("check_tiles", declare_check_tiles, testing::split_words(line), folder_.path());
   }
   Outcome check_with_meshes() const { return check(summaries() + "--meshes ."); }
   void refuse_tiles(const std::string& line, const std::string& culprit) const {
@@ -64,7 +64,7 @@ class CheckTiles : public SynthTest {
 };
 
 // The corners of all triangles, each triangle from its least corner on, sorted.
-std::vector<std::array<std::array<double, 3>, 3>> corners_of(const TriangleMesh& mesh) {
+std::vector<std::array<std::array<double, 3>, 3>> triangle_corners(const TriangleMesh& mesh) {
   std::vector<std::array<std::array<double, 3>, 3>> all;
   for (const Triangle& t : mesh.triangles) {
     auto& c = all.emplace_back();
@@ -84,9 +84,9 @@ TEST_F(CheckTiles, TilesThatJoinAreTheWholeMesh) {
   TriangleMesh all;
   for (int i = 1; i <= kTiles; ++i) all = testing::joined(all, read_mesh(folder_ / mesh_name(i)));
   const TriangleMesh mesh = read_mesh(folder_ / "whole.ply");
-  EXPECT_TRUE(corners_of(all) == corners_of(mesh));
+  EXPECT_TRUE(triangle_corners(all) == triangle_corners(mesh));
 
-  std::vector<std::string> names = testing::words_of(summaries());
+  std::vector<std::string> names = testing::split_words(summaries());
   std::shuffle(names.begin(), names.end(), std::mt19937(7));
   std::string shuffled;
   for (const std::string& name : names) shuffled += name + " ";
@@ -165,7 +165,7 @@ TEST_F(CheckTiles, SidesThatDifferDoNotFit) {
 // Moves a coordinate of one vertex in the plane z by one step of a float.
 void move_a_vertex(const std::filesystem::path& mesh, float z, std::size_t axis) {
   constexpr std::size_t kVertexBytes = 24;
-  std::string bytes = testing::text_of(mesh);
+  std::string bytes = testing::read_text(mesh);
   std::size_t at = bytes.find("end_header\n") + 11;
   std::array<float, 3> p{};
   for (;; at += kVertexBytes) {

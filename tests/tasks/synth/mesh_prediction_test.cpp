@@ -12,13 +12,13 @@ constexpr int kThreads = 1;
 
 const std::filesystem::path kRecipeFile = "recipe.json";
 
-MeshPart part_of(const MeshSpec& spec, const Recipe& recipe) {
+MeshPart make_part(const MeshSpec& spec, const Recipe& recipe) {
   return make_body_part(spec, recipe, kRecipeFile, false, {}, {});
 }
 
 MeshPrediction predicted(const Recipe& recipe, MeshSpec spec, const std::string& file = "mesh.ply") {
   const MeshJob mesh{.spec = std::move(spec), .sinks = {.file = file}};
-  return predict_mesh(mesh, part_of(mesh.spec, recipe), {kThreads});
+  return predict_mesh(mesh, make_part(mesh.spec, recipe), {kThreads});
 }
 MeshPrediction predicted(const Recipe& recipe, int resolution) {
   return predicted(recipe, MeshSpec{.resolution = resolution});
@@ -94,7 +94,7 @@ TEST(MeshPrediction, TrianglesChooseTheResolution) {
   const MeshSpec whole;
   for (const Recipe& recipe : recipes()) {
     for (const double triangles : {5e3, 2e4, 1e5}) {
-      MeshEstimator estimator(part_of(whole, recipe));
+      MeshEstimator estimator(make_part(whole, recipe));
       const int resolution = estimator.resolution_for(triangles);
       const MeshStatistics mesh = made(recipe, resolution);
       EXPECT_NEAR(double(mesh.triangles), triangles, 0.055 * triangles);
@@ -110,7 +110,7 @@ TEST(MeshPrediction, TrianglesChooseTheResolution) {
 TEST(MeshPrediction, MoreTrianglesThanTheFinestMeshHasAreRefused) {
   const Recipe recipe = testing::potato_recipe(20, 3);
   const MeshSpec whole;
-  EXPECT_THROW(MeshEstimator(part_of(whole, recipe)).resolution_for(1e10), InputError);
+  EXPECT_THROW(MeshEstimator(make_part(whole, recipe)).resolution_for(1e10), InputError);
 }
 
 TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
@@ -149,7 +149,7 @@ TEST(MeshPrediction, ImpulsesTakeMemory) {
 TEST(MeshPrediction, MemoryThatIsNotThereIsRefused) {
   const Recipe recipe = hills();
   const MeshJob planned{.sinks = {.file = "mesh.obj"}};
-  const MeshPrediction mesh = predict_mesh(planned, part_of(planned.spec, recipe), {kThreads});
+  const MeshPrediction mesh = predict_mesh(planned, make_part(planned.spec, recipe), {kThreads});
   EXPECT_NO_THROW(require_memory(planned, recipe, mesh, 1.01 * mesh.peak_bytes));
   EXPECT_THROW(require_memory(planned, recipe, mesh, 0.99 * mesh.peak_bytes), InputError);
 }

@@ -10,7 +10,7 @@ namespace {
 
 using SynthBake = SynthTest;
 
-nlohmann::json document_of(const std::string& glb) {
+nlohmann::json glb_document(const std::string& glb) {
   return nlohmann::json::parse(glb.substr(20, glb.find(std::string("BIN\0", 4)) - 24));
 }
 
@@ -26,7 +26,7 @@ TEST_F(SynthBake, WritesMapsAndMaterialsOfEachLevel) {
     EXPECT_EQ(text(std::string("out_") + word + ".png").substr(1, 3), "PNG");
   }
   const std::string glb = text("out.glb");
-  const auto document = document_of(glb);
+  const auto document = glb_document(glb);
   ASSERT_EQ(document["materials"].size(), 2u);
   EXPECT_EQ(document["images"].size(), 4u);
   EXPECT_EQ(document["images"][2]["name"], "out_lod1_normal");

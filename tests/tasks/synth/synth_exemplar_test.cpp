@@ -42,7 +42,7 @@ class SynthExemplar : public SynthTest {
     return write("r.json", with_body ? ball_recipe("m", 10, ", " + layers)
                                      : R"({"format_version": 1, "length_unit": "m", )" + layers + "}");
   }
-  std::string recipe_of(const std::string& image, bool with_body = true) {
+  std::string make_recipe(const std::string& image, bool with_body = true) {
     return recipe_with_hash(image, file_sha256(folder_ / image), with_body);
   }
   std::string make_mesh(const std::string& recipe, const std::string& mesh,
@@ -65,7 +65,7 @@ TEST_F(SynthExemplar, TakesGreyColourAlphaAndSixteenBits) {
                                          {PNG_FORMAT_LINEAR_Y, 1},
                                          {PNG_FORMAT_GA, 2}}) {
     write_image("i.png", 64, static_cast<std::uint32_t>(format), channels);
-    make_mesh(recipe_of("i.png"), "m.ply");
+    make_mesh(make_recipe("i.png"), "m.ply");
   }
 }
 
@@ -77,20 +77,20 @@ TEST_F(SynthExemplar, RefusesImagesThatAreNotWhatTheRecipeSays) {
   write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
   refuse_recipe(recipe_with_hash("i.png", zeros), "has changed since the recipe was written");
   write("text.png", "no image");
-  refuse_recipe(recipe_of("text.png"), "is no PNG");
+  refuse_recipe(make_recipe("text.png"), "is no PNG");
   write("half.png", text("i.png").substr(0, 900));
-  refuse_recipe(recipe_of("half.png"), "is damaged");
+  refuse_recipe(make_recipe("half.png"), "is damaged");
   write_image("small.png", 8, PNG_FORMAT_GRAY, 1);
-  refuse_recipe(recipe_of("small.png"), "is 8 x 8 pixels");
+  refuse_recipe(make_recipe("small.png"), "is 8 x 8 pixels");
   write_image("large.png", 8193, PNG_FORMAT_GRAY, 1, true);
-  refuse_recipe(recipe_of("large.png"), "is 8193 x 8193 pixels");
+  refuse_recipe(make_recipe("large.png"), "is 8193 x 8193 pixels");
   write_image("flat.png", 64, PNG_FORMAT_GRAY, 1, true);
-  refuse_recipe(recipe_of("flat.png"), "has one grey value only");
+  refuse_recipe(make_recipe("flat.png"), "has one grey value only");
 }
 
 TEST_F(SynthExemplar, DrawsATexture) {
   write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
-  const std::string line = recipe_of("i.png", false) + " --texture 200x100 --tileable --threads ";
+  const std::string line = make_recipe("i.png", false) + " --texture 200x100 --tileable --threads ";
   succeed(line + "1 -o one.png");
   succeed(line + "2 -o two.png");
   EXPECT_EQ(text("one.png").substr(16, 8), std::string("\0\0\0\xC8\0\0\0\x64", 8));  // width and height
@@ -102,7 +102,7 @@ TEST_F(SynthExemplar, DrawsATexture) {
 // The written recipe names the image from its own folder.
 TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
   write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
-  const std::string recipe = recipe_of("i.png");
+  const std::string recipe = make_recipe("i.png");
   std::filesystem::create_directory(folder_ / "deep");
   succeed(recipe + " --write-recipe deep/w.json");
   EXPECT_EQ(std::get<ExemplarLayer>(read_recipe(folder_ / "deep/w.json").layers[0]).image, "../i.png");
@@ -112,9 +112,9 @@ TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
 // Vertices have colours in .ply and .glb, and other formats say that they have none.
 TEST_F(SynthExemplar, PaintsVerticesWithTheSameBytesForAnyThreads) {
   write_image("i.png", 64, PNG_FORMAT_RGB, 3);
-  EXPECT_FALSE(has(make_mesh(recipe_of("i.png"), "plain.ply"), "property uchar red"));
+  EXPECT_FALSE(has(make_mesh(make_recipe("i.png"), "plain.ply"), "property uchar red"));
   fields_ = R"("height_rms": 0.05, "color": true)";
-  const std::string recipe = recipe_of("i.png"), bytes = make_mesh(recipe, "one.ply", "1");
+  const std::string recipe = make_recipe("i.png"), bytes = make_mesh(recipe, "one.ply", "1");
   EXPECT_EQ(make_mesh(recipe, "two.ply", "2"), bytes);
   EXPECT_NE(bytes.find("property uchar red"), std::string::npos);
   EXPECT_NE(make_mesh(recipe, "m.glb").find("COLOR_0"), std::string::npos);
@@ -125,8 +125,8 @@ TEST_F(SynthExemplar, PaintsVerticesWithTheSameBytesForAnyThreads) {
 TEST_F(SynthExemplar, WritesMaterials) {
   write_image("i.png", 64, PNG_FORMAT_RGB, 3);
   const auto draw = [&](const std::string& output) {
-    return run(recipe_of("i.png", false) + " --texture 100x80 --texture-of material --tileable -o " + output +
-               " --summary s.json");
+    return run(make_recipe("i.png", false) + " --texture 100x80 --texture-of material --tileable -o " +
+               output + " --summary s.json");
   };
   EXPECT_EQ(draw("grey.png").status, 0);
   EXPECT_FALSE(exists("grey_color.png"));
@@ -152,7 +152,7 @@ TEST_F(SynthExemplar, WritesMaterials) {
 TEST_F(SynthExemplar, RefusesMaterialsOverTheirImage) {
   write_image("rock_color.png", 64, PNG_FORMAT_RGB, 3);
   const std::string before = text("rock_color.png");
-  refuse(recipe_of("rock_color.png", false) + " --texture 100x80 --texture-of material -o rock.png",
+  refuse(make_recipe("rock_color.png", false) + " --texture 100x80 --texture-of material -o rock.png",
          "rock_color.png");
   EXPECT_EQ(text("rock_color.png"), before);
 }

@@ -185,18 +185,18 @@ TEST_F(SynthMembers, AGpuThatFailsIsToldOnceAndNotTriedAgain) {
     const auto device = std::make_shared<DeviceOption>();
     device->add_to(job.options);
     return [&job, device] {
-      std::vector<DeviceOption> of_members(3, *device);
+      std::vector<DeviceOption> member_devices(3, *device);
       for (int failing = 0; failing < 2; ++failing) {
         JobPart member(job);
         try {
           throw DeviceError("GPU: failure " + std::to_string(failing));
         } catch (const DeviceError& error) {
-          EXPECT_FALSE(of_members[static_cast<std::size_t>(failing)].after_failure(member, error));
+          EXPECT_FALSE(member_devices[static_cast<std::size_t>(failing)].after_failure(member, error));
         }
       }
       JobPart next(job);
-      EXPECT_FALSE(of_members[2].has_gpu());
-      EXPECT_EQ(of_members[2].choose(next).words, "computed on the CPU: the GPU failed before");
+      EXPECT_FALSE(member_devices[2].has_gpu());
+      EXPECT_EQ(member_devices[2].choose(next).words, "computed on the CPU: the GPU failed before");
     };
   };
   const Outcome outcome = testing::run_job("synth", declare, {"--device", "auto"}, folder_.path());

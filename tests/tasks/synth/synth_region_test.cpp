@@ -37,13 +37,13 @@ class Tiff {
     return value;
   }
   std::size_t entry(int tag) const { return entries_.at(static_cast<std::uint64_t>(tag)); }
-  std::uint64_t short_of(int tag) const { return number(entry(tag) + 8, 2); }
+  std::uint64_t short_at(int tag) const { return number(entry(tag) + 8, 2); }
   // Where the first strip begins.
   std::size_t first_pixel() const {
-    return number(entry(273) + 4, 4) == 1 ? values_of(273) : number(values_of(273), 4);
+    return number(entry(273) + 4, 4) == 1 ? values_at(273) : number(values_at(273), 4);
   }
   // Where the values of a tag begin, which do not fit into its entry.
-  std::size_t values_of(int tag) const { return number(entry(tag) + 8, 4); }
+  std::size_t values_at(int tag) const { return number(entry(tag) + 8, 4); }
 
  private:
   std::string bytes_;
@@ -60,12 +60,12 @@ TEST_F(SynthRegion, HeightMapOfAPatch) {
   EXPECT_NEAR(frame["up"][2], 0.8, 5e-3);
   ASSERT_EQ(text("h.tif").substr(0, 4), std::string("II*\0", 4));
   const Tiff tiff(text("h.tif"));
-  EXPECT_EQ(tiff.short_of(256), 32u);
-  EXPECT_EQ(tiff.short_of(258), 32u);
-  EXPECT_EQ(tiff.short_of(339), 3u);  // floats
-  EXPECT_NEAR(tiff.real<double>(tiff.values_of(33550)), 100.0 / 32, 1e-9);
-  EXPECT_NEAR(tiff.real<double>(tiff.values_of(33922) + 24), -50.0, 1e-9);
-  EXPECT_NEAR(tiff.real<double>(tiff.values_of(33922) + 32), 50.0, 1e-9);
+  EXPECT_EQ(tiff.short_at(256), 32u);
+  EXPECT_EQ(tiff.short_at(258), 32u);
+  EXPECT_EQ(tiff.short_at(339), 3u);  // floats
+  EXPECT_NEAR(tiff.real<double>(tiff.values_at(33550)), 100.0 / 32, 1e-9);
+  EXPECT_NEAR(tiff.real<double>(tiff.values_at(33922) + 24), -50.0, 1e-9);
+  EXPECT_NEAR(tiff.real<double>(tiff.values_at(33922) + 32), 50.0, 1e-9);
   EXPECT_EQ(text("h.tif").substr(tiff.entry(42113) + 8, 3), "nan");
   // The pixel beside the middle lies 1 km from the ball's centre.
   const double height = tiff.real<float>(tiff.first_pixel() + 4 * (16 * 32 + 16));
@@ -129,20 +129,21 @@ TEST_F(SynthRegion, APatchHasTheGravityOfTheWholeBodyLong) {
   const std::string line =
       "worm.json -o p.ply --patch 0 0 0.064 0.05 --aligned --resolution 25 --gravity 2000 5 --summary s.json";
   succeed(line + " --hazard-map hazards.tif --footprint 0.006");
-  const auto of_patch = json("s.json")["gravity"];
+  const auto patch_gravity = json("s.json")["gravity"];
   std::string points;
   for (const Vec3d& p : read_mesh(folder_ / "p.ply").vertices)
     points += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z + 0.064) + "\n";
   write("points.csv", points);
   testing::run_job(
       "gravity", declare_gravity,
-      testing::words_of("worm.json --density 2000 --period 5 --resolution 200 --points points.csv "
-                        "--sample 0 --degree 0 --summary g.json --quiet"),
+      testing::split_words("worm.json --density 2000 --period 5 --resolution 200 --points points.csv "
+                           "--sample 0 --degree 0 --summary g.json --quiet"),
       folder_.path());
-  const auto of_body = json("g.json")["values"];
+  const auto body_values = json("g.json")["values"];
   for (const char* column : {"potential_J_kg", "effective_gravity_m_s2"}) {
     for (const char* end : {"min", "max"})
-      EXPECT_NEAR(of_patch[column][end].get<double>() / of_body[column][end].get<double>(), 1.0, 5e-3)
+      EXPECT_NEAR(patch_gravity[column][end].get<double>() / body_values[column][end].get<double>(), 1.0,
+                  5e-3)
           << column;
   }
   const auto hazards = json("s.json")["hazard_map"];
@@ -150,7 +151,7 @@ TEST_F(SynthRegion, APatchHasTheGravityOfTheWholeBodyLong) {
   EXPECT_NEAR(hazards["largest"]["boulder_m"], 4.0, 1e-6);
   EXPECT_GT(hazards["largest"]["roughness_m"], 0.2);
   const Tiff tiff(text("hazards.tif"));
-  EXPECT_EQ(tiff.short_of(277), 3u);                              // bands
+  EXPECT_EQ(tiff.short_at(277), 3u);                              // bands
   EXPECT_TRUE(std::isnan(tiff.real<float>(tiff.first_pixel())));  // a footprint that leaves the map
   refuse_all(line, {{" --hazard-map x.tif", "--footprint"},
                     {" --hazard-map x.tif --footprint 0.001", "--footprint: is less than 3 pixels"},

@@ -27,7 +27,7 @@ GreyImage with_gaps(GreyImage image) {
 }
 
 TEST(CompletedImage, KeepsWhatIsKnown) {
-  const GreyImage whole = testing::realisation_of(testing::four_lobe_spectrum(), 5);
+  const GreyImage whole = testing::draw_realisation(testing::four_lobe_spectrum(), 5);
   EXPECT_EQ(completed(whole, 1).values, whole.values);
   const GreyImage gaps = with_gaps(whole), image = completed(gaps, 1);
   EXPECT_NEAR(missing_share(image), 1.0 / 9.0, 0.02);
@@ -40,7 +40,7 @@ TEST(CompletedImage, KeepsWhatIsKnown) {
 
 // Smooth values alone lack power in the octaves of wavelengths below the gaps' sides.
 TEST(CompletedImage, HasTheSpectrumOfTheWhole) {
-  const GreyImage whole = testing::realisation_of(testing::four_lobe_spectrum(), 5);
+  const GreyImage whole = testing::draw_realisation(testing::four_lobe_spectrum(), 5);
   const GreyImage gaps = with_gaps(whole);
   const PowerSpectrum truth = exemplar_periodogram(whole);
   const auto ratio = [&](const GreyImage& image) {

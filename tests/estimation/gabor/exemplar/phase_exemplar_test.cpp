@@ -20,9 +20,9 @@ TEST(PhaseExemplar, AnImageHasItsSpectrumExactly) {
     GreyImage noise{width, 32, {}};
     for (int i = 0; i < 32 * width; ++i) noise.values.push_back(random.normal());
     spectrum = power_spectrum(noise);
-    const PowerSpectrum of_image = power_spectrum(random_phase_image(spectrum, 7));
+    const PowerSpectrum image_spectrum = power_spectrum(random_phase_image(spectrum, 7));
     for (std::size_t i = 0; i < spectrum.power.size(); ++i)
-      ASSERT_NEAR(of_image.power[i], spectrum.power[i], 1e-9) << i;
+      ASSERT_NEAR(image_spectrum.power[i], spectrum.power[i], 1e-9) << i;
     EXPECT_NE(random_phase_image(spectrum, 7).values, random_phase_image(spectrum, 8).values);
   }
 }
@@ -39,15 +39,15 @@ TEST(PhaseExemplar, TakesTheSpectrumOfThePhoto) {
   EXPECT_NEAR(sample_variance(texture.values) / sample_variance(cut.image.values), 1.0, 0.25);
   EXPECT_LT(texture_score(texture, cut.image).sum(), 0.2);
   const ExemplarLayer periodic =
-      phase_exemplar({testing::realisation_of(testing::ring_spectrum(), 2)}, "periodic", 1);
+      phase_exemplar({testing::draw_realisation(testing::ring_spectrum(), 2)}, "periodic", 1);
   EXPECT_EQ(periodic.pixels->width, 128);
   EXPECT_EQ(periodic.pixels->height, 128);
 }
 
 TEST(PhaseExemplar, PaintsTheColoursOfItsPrincipalAxes) {
   std::vector<GreyImage> planes;
-  const GreyImage first = testing::realisation_of(testing::ring_spectrum(), 4),
-                  second = testing::realisation_of(testing::steep_spectrum(), 5);
+  const GreyImage first = testing::draw_realisation(testing::ring_spectrum(), 4),
+                  second = testing::draw_realisation(testing::steep_spectrum(), 5);
   for (const double share : {0.08, 0.05, 0.02}) {
     GreyImage plane = first;
     for (std::size_t i = 0; i < plane.values.size(); ++i) {

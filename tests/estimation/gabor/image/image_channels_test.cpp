@@ -74,7 +74,7 @@ TEST(ImageChannels, ConstantImagesStillHaveOne) {
 
 // A texture of mean 0.5 and standard deviation 0.1.
 GreyImage texture() {
-  GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 3);
+  GreyImage image = testing::draw_realisation(testing::four_lobe_spectrum(), 3);
   for (double& v : image.values) v = 0.5 + 0.1 * v;
   return image;
 }

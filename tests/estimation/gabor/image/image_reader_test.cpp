@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 class ImageReaderTest : public ::testing::Test {
  protected:
-  static std::string error_of(const fs::path& file) {
-    return testing::refusal_of([&] { read_image(file, false); });
+  static std::string error_message(const fs::path& file) {
+    return testing::refusal_text([&] { read_image(file, false); });
   }
 
   testing::ScratchFolder folder;
@@ -74,7 +74,7 @@ TEST_F(ImageReaderTest, AlphaIsIgnoredAndSaidWhereItHides) {
 
 TEST_F(ImageReaderTest, AnimationsAreSaid) {
   write_png8_grey(std::vector<std::uint8_t>{1, 2, 3, 4}, 2, 2, folder / "still.png");
-  std::string bytes = testing::text_of(folder / "still.png");
+  std::string bytes = testing::read_text(folder / "still.png");
   // An acTL chunk (8 bytes of data) between IHDR, which ends at byte 33, and IDAT.
   bytes.insert(33, std::string("\0\0\0\x08"
                                "acTL\0\0\0\x02\0\0\0\0\xf3\x8d\x93\x70",
@@ -106,40 +106,41 @@ TEST_F(ImageReaderTest, ColoursBecomeLuma) {
 }
 
 TEST_F(ImageReaderTest, NamesTheFileAndTheRemedy) {
-  EXPECT_NE(error_of(folder / "missing.png").find("missing.png: cannot be read"), std::string::npos);
-  EXPECT_NE(error_of(folder.path()).find("is a folder"), std::string::npos);
+  EXPECT_NE(error_message(folder / "missing.png").find("missing.png: cannot be read"), std::string::npos);
+  EXPECT_NE(error_message(folder.path()).find("is a folder"), std::string::npos);
   EXPECT_NE(
-      error_of(folder.write("text.png", "this is no picture, it is a line of text")).find("first bytes"),
+      error_message(folder.write("text.png", "this is no picture, it is a line of text")).find("first bytes"),
       std::string::npos);
-  EXPECT_NE(error_of(folder.write("empty.png", "")).find("is empty"), std::string::npos);
+  EXPECT_NE(error_message(folder.write("empty.png", "")).find("is empty"), std::string::npos);
 }
 
 TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
   std::vector<std::uint8_t> grey(64 * 64);
   for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint8_t>(i * 37 % 251);
   write_png8_grey(grey, 64, 64, folder / "whole.png");
-  const std::string bytes = testing::text_of(folder / "whole.png");
-  EXPECT_NE(error_of(folder.write("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("cut.jpg",
-                                  std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) + std::string(30, 'x')))
+  const std::string bytes = testing::read_text(folder / "whole.png");
+  EXPECT_NE(error_message(folder.write("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
+  EXPECT_NE(error_message(folder.write("cut.jpg", std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) +
+                                                      std::string(30, 'x')))
                 .find("cut.jpg"),
             std::string::npos);
-  EXPECT_NE(error_of(folder.write("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
-                .find("cut.tif"),
-            std::string::npos);
+  EXPECT_NE(
+      error_message(folder.write("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
+          .find("cut.tif"),
+      std::string::npos);
 }
 
 TEST_F(ImageReaderTest, ADamagedPictureWithAlphaIsAnError) {
   std::string bytes(
       "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x10\0\0\0\x10\x08\x06\0\0\0\x1f\xf3\xff\x61\0\0\0\x1dIDAT", 41);
   bytes.resize(80, '\x9c');
-  EXPECT_NE(error_of(folder.write("alpha.png", bytes)).find("damaged"), std::string::npos);
+  EXPECT_NE(error_message(folder.write("alpha.png", bytes)).find("damaged"), std::string::npos);
 }
 
 // libpng prints about each of these files. What others print meanwhile is neither lost nor held back.
 TEST_F(ImageReaderTest, DamagedFilesAreSilentInManyThreads) {
   write_png8_grey(std::vector<std::uint8_t>(64, 7), 8, 8, folder / "whole.png");
-  std::string bytes = testing::text_of(folder / "whole.png");
+  std::string bytes = testing::read_text(folder / "whole.png");
   bytes[bytes.find("IDAT") + 6] ^= 1;
   const fs::path damaged = folder.write("damaged.png", bytes);
   struct stat before {
@@ -150,7 +151,7 @@ TEST_F(ImageReaderTest, DamagedFilesAreSilentInManyThreads) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&] {
-      for (int k = 0; k < 200; ++k) EXPECT_NE(error_of(damaged), "no error");
+      for (int k = 0; k < 200; ++k) EXPECT_NE(error_message(damaged), "no error");
     });
   }
   std::string expected;
@@ -169,12 +170,12 @@ TEST_F(ImageReaderTest, DamagedFilesAreSilentInManyThreads) {
 // The header alone decides, and nothing is allocated for a refused size.
 TEST_F(ImageReaderTest, HugeImagesAreRefusedBeforeDecoding) {
   write_png8_grey(std::vector<std::uint8_t>(4), 2, 2, folder / "huge.png");
-  std::string bytes = testing::text_of(folder / "huge.png");
+  std::string bytes = testing::read_text(folder / "huge.png");
   bytes.replace(16, 8, std::string("\0\0\x4e\x20\0\0\x4e\x20", 8));
   const auto sum =
       static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()) + 12, 17));
   for (std::size_t k = 0; k < 4; ++k) bytes[29 + k] = static_cast<char>(sum >> (24 - 8 * k));
-  const std::string error = error_of(folder.write("huge.png", bytes));
+  const std::string error = error_message(folder.write("huge.png", bytes));
   EXPECT_NE(error.find("20000 x 20000"), std::string::npos) << error;
   EXPECT_NE(error.find("GB"), std::string::npos);
 }
@@ -201,9 +202,9 @@ TEST_F(ImageReaderTest, WebPIsRead) {
     EXPECT_EQ(size.height, 40);
     EXPECT_NEAR(read_image(file, true).planes[0].values[77], 0.8, 0.02);
   }
-  std::string bytes = testing::text_of(folder / "p.webp");
+  std::string bytes = testing::read_text(folder / "p.webp");
   bytes.replace(12, 9, std::string("VP8X\x0a\0\0\0\x02", 9));
-  EXPECT_NE(error_of(folder.write("moving.webp", bytes)), "no error");
+  EXPECT_NE(error_message(folder.write("moving.webp", bytes)), "no error");
 }
 
 class JpegTest : public ImageReaderTest {
@@ -229,10 +230,10 @@ TEST_F(JpegTest, IsTurnedUpright) {
 
 // Decoders fill the missing part with grey.
 TEST_F(JpegTest, ThatIsCutIsAnError) {
-  const std::string bytes = testing::text_of(write(3));
-  EXPECT_EQ(error_of(folder.write("whole.jpg", bytes)), "no error");
+  const std::string bytes = testing::read_text(write(3));
+  EXPECT_EQ(error_message(folder.write("whole.jpg", bytes)), "no error");
   for (const std::size_t left : {bytes.size() - 2, bytes.size() - 60, bytes.size() / 2})
-    EXPECT_NE(error_of(folder.write("cut.jpg", bytes.substr(0, left))), "no error") << left;
+    EXPECT_NE(error_message(folder.write("cut.jpg", bytes.substr(0, left))), "no error") << left;
 }
 
 // The chunk tRNS.

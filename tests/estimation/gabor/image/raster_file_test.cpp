@@ -28,8 +28,8 @@ class RasterFileTest : public ::testing::Test {
                  const std::function<void(GDALDataset&)>& describe = {}) {
     return read_image(write_raster(folder / "raster", input, std::move(values), describe), false);
   }
-  std::string error_of(const fs::path& file) {
-    return testing::refusal_of([&] { read_image(file, false); });
+  std::string error_message(const fs::path& file) {
+    return testing::refusal_text([&] { read_image(file, false); });
   }
   static void expect_values(const GreyImage& image, const std::vector<double>& expected) {
     ASSERT_EQ(image.values.size(), expected.size());
@@ -294,7 +294,7 @@ TEST_F(RasterFileTest, MarksThatNoFileNamesAreFound) {
       missing_share(read({"GTiff", GDT_Float64}, {1.7e6, 1.7e6, 1.7e6 + 1, 1.7e6, 1.7e6, 1.7e6}).planes[0]),
       0.0);
   write_raster(folder / "far.tif", {"GTiff", GDT_Float64}, {1e12, 1, 2, 3, 4, 5});
-  EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata"));
+  EXPECT_TRUE(has(error_message(folder / "far.tif"), "-a_nodata"));
 }
 
 TEST_F(RasterFileTest, OneMarkMayHideAnother) {
@@ -348,15 +348,15 @@ std::string pds3(int bits, const std::string& lines, const std::string& image = 
 
 // GDAL keeps the unit of a PDS3 label to itself.
 TEST_F(RasterFileTest, ThePds3LabelHasTheUnit) {
-  const auto map_of = [&](const std::string& lines) {
+  const auto make_map = [&](const std::string& lines) {
     return read_image(folder.write("dem.img", pds3(16, lines)), false);
   };
-  const ImageFile map = map_of(" UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n");
+  const ImageFile map = make_map(" UNIT = \"KILOMETER\"\r\n SCALING_FACTOR = 0.5\r\n");
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
   EXPECT_NEAR(map.planes[0].values[5] - map.planes[0].values[0], 2500.0, 1e-9);
-  EXPECT_NEAR(map_of(" UNIT = METER\r\n").planes[0].values[5], 5.0, 1e-9);
-  EXPECT_FALSE(map_of(" UNIT = \"KM/S\"\r\n").scale.has_value());
+  EXPECT_NEAR(make_map(" UNIT = METER\r\n").planes[0].values[5], 5.0, 1e-9);
+  EXPECT_FALSE(make_map(" UNIT = \"KM/S\"\r\n").scale.has_value());
 }
 
 TEST_F(RasterFileTest, BlanksBehindALabelTakeNoStack) {
@@ -377,8 +377,8 @@ TEST_F(RasterFileTest, BlackIsMissingWhereThePds3LabelSaysSo) {
 TEST_F(RasterFileTest, FloatsOfAVaxAndLabelsAloneAreRefused) {
   std::string file = pds3(32, "");
   file.replace(file.find("MSB_INTEGER"), 11, "VAX_REAL   ");
-  EXPECT_TRUE(has(error_of(folder.write("v.img", file)), "floats of a VAX (VAX_REAL)"));
-  EXPECT_TRUE(has(error_of(folder.write("p.lbl", pds3(8, "", "(\"gone.img\", 1)"))),
+  EXPECT_TRUE(has(error_message(folder.write("v.img", file)), "floats of a VAX (VAX_REAL)"));
+  EXPECT_TRUE(has(error_message(folder.write("p.lbl", pds3(8, "", "(\"gone.img\", 1)"))),
                   "put the file that it names beside it"));
 }
 
@@ -388,13 +388,13 @@ TEST_F(RasterFileTest, LabelsNameNoFilesOfOtherFolders) {
   folder.write("other/p.img", pixels);
   folder.write("p.img", pixels);
   const auto error = [&](const std::string& image) {
-    return error_of(folder.write("p.lbl", pds3(8, "", "(\"" + image + "\", 1)")));
+    return error_message(folder.write("p.lbl", pds3(8, "", "(\"" + image + "\", 1)")));
   };
   EXPECT_EQ(error("p.img"), "no error");
   EXPECT_TRUE(has(error("other/p.img"), "own folder"));
   folder.write("other/up.lbl", pds3(8, "", "(\"../p.img\", 1)"));
-  EXPECT_TRUE(has(error_of(folder / "other/up.lbl"), "own folder"));
-  EXPECT_TRUE(has(error_of(folder / "p.img"), "give " + (folder / "p.lbl").string()));
+  EXPECT_TRUE(has(error_message(folder / "other/up.lbl"), "own folder"));
+  EXPECT_TRUE(has(error_message(folder / "p.img"), "give " + (folder / "p.lbl").string()));
 }
 
 // A FITS file of 3 x 2 stored numbers of 16 bits.
@@ -420,27 +420,27 @@ std::string fits(const std::vector<int>& stored, const std::vector<std::string>&
 }
 
 TEST_F(RasterFileTest, FitsHasItsUnitAndItsBlanks) {
-  const auto map_of = [&](const std::vector<int>& stored, const std::vector<std::string>& cards) {
+  const auto make_map = [&](const std::vector<int>& stored, const std::vector<std::string>& cards) {
     return read_image(folder.write("m.fits", fits(stored, cards)), false);
   };
   const ImageFile map =
-      map_of({-32768, 1, 2, 3, 4, 5}, {"BLANK   =               -32768", "BUNIT   = 'km      '"});
+      make_map({-32768, 1, 2, 3, 4, 5}, {"BLANK   =               -32768", "BUNIT   = 'km      '"});
   ASSERT_TRUE(map.scale.has_value());
   EXPECT_TRUE(map.scale->heights);
   EXPECT_NEAR(missing_share(map.planes[0]), 1.0 / 6.0, 1e-12);
   EXPECT_DOUBLE_EQ(*std::max_element(map.planes[0].values.begin(), map.planes[0].values.end()), 5000.0);
   // Unsigned numbers are stored from -32768.
   const std::string zero = "BZERO   =              32768.0";
-  const ImageFile words = map_of({32767, -32768, 0, 0, 0, 0}, {zero});
+  const ImageFile words = make_map({32767, -32768, 0, 0, 0, 0}, {zero});
   const auto [black, white] =
       std::minmax_element(words.planes[0].values.begin(), words.planes[0].values.end());
   EXPECT_DOUBLE_EQ(*black, 0.0);
   EXPECT_DOUBLE_EQ(*white, 1.0);
-  const ImageFile gap = map_of({-32768, 1, 2, 3, 4, 5}, {zero, "BLANK   =               -32768"});
+  const ImageFile gap = make_map({-32768, 1, 2, 3, 4, 5}, {zero, "BLANK   =               -32768"});
   EXPECT_NEAR(missing_share(gap.planes[0]), 1.0 / 6.0, 1e-12);
   // GDAL would cut off fractions.
   folder.write("half.fits", fits({0, 1, 2, 3, 4, 5}, {"BSCALE  =                  0.5"}));
-  EXPECT_TRUE(has(error_of(folder / "half.fits"), "scaled integers"));
+  EXPECT_TRUE(has(error_message(folder / "half.fits"), "scaled integers"));
 }
 
 TEST_F(RasterFileTest, MarksCountAsStored) {
@@ -457,7 +457,7 @@ TEST_F(RasterFileTest, MarksCountAsStored) {
   EXPECT_EQ(map.scale->height_source, "unit \"metres above the ellipsoid\"");
   write_raster(folder / "far.tif", {"GTiff", GDT_Int32}, {-2000000000, 10, 11, 12, 11, 10},
                [](GDALDataset& raster) { raster.GetRasterBand(1)->SetScale(10.0); });
-  EXPECT_TRUE(has(error_of(folder / "far.tif"), "-a_nodata -2000000000)"));
+  EXPECT_TRUE(has(error_message(folder / "far.tif"), "-a_nodata -2000000000)"));
 }
 
 TEST_F(RasterFileTest, AnUnknownUnitIsSaid) {
@@ -499,7 +499,7 @@ TEST_F(RasterFileTest, OneHugeTileIsRefused) {
                 1,
                 {"TILED=YES", "BLOCKXSIZE=2048", "BLOCKYSIZE=2048", "SPARSE_OK=TRUE"}},
                std::vector<double>(4096, 1.0));
-  EXPECT_TRUE(has(error_of(folder / "t.tif"), "tiles are much larger"));
+  EXPECT_TRUE(has(error_message(folder / "t.tif"), "tiles are much larger"));
 }
 
 TEST_F(RasterFileTest, AGlobeInDegreesNeedsAFrame) {
@@ -534,17 +534,17 @@ TEST_F(RasterFileTest, JpegOf2000IsRead) {
 
 TEST_F(RasterFileTest, WhatNoReaderShouldGuessIsRefused) {
   write_raster(folder / "complex.tif", {"GTiff", GDT_CFloat32}, kSteps);
-  EXPECT_TRUE(has(error_of(folder / "complex.tif"), "complex"));
+  EXPECT_TRUE(has(error_message(folder / "complex.tif"), "complex"));
   write_raster(folder / "five.tif", {"GTiff", GDT_Byte, 3, 2, 5}, std::vector<double>(30, 1.0));
-  EXPECT_TRUE(has(error_of(folder / "five.tif"), "5 bands"));
+  EXPECT_TRUE(has(error_message(folder / "five.tif"), "5 bands"));
   write_raster(folder / "two.tif", {"GTiff", GDT_Float32, 3, 2, 2}, std::vector<double>(12, 1.0));
-  EXPECT_TRUE(has(error_of(folder / "two.tif"), "2 bands"));
+  EXPECT_TRUE(has(error_message(folder / "two.tif"), "2 bands"));
   write_raster(folder / "gaps.tif", {"GTiff", GDT_Float32}, {0, 0, 0, 0, 5, 6},
                [](GDALDataset& raster) { raster.GetRasterBand(1)->SetNoDataValue(0); });
-  EXPECT_TRUE(has(error_of(folder / "gaps.tif"), "67 %"));
-  EXPECT_TRUE(
-      has(error_of(folder.write("list.vrt", "<VRTDataset rasterXSize=\"9\" rasterYSize=\"9\"></VRTDataset>")),
-          "first bytes"));
+  EXPECT_TRUE(has(error_message(folder / "gaps.tif"), "67 %"));
+  EXPECT_TRUE(has(error_message(folder.write(
+                      "list.vrt", "<VRTDataset rasterXSize=\"9\" rasterYSize=\"9\"></VRTDataset>")),
+                  "first bytes"));
 }
 
 // The first picture of a raw file is a thumbnail, and the true one is another.
@@ -554,13 +554,13 @@ TEST_F(RasterFileTest, RawFilesOfCamerasAreRefused) {
     const std::uint8_t version[] = {1, 4, 0, 0};
     TIFFSetField(tiff, TIFFTAG_DNGVERSION, version);
   });
-  EXPECT_TRUE(has(error_of(folder / "a.dng"), "raw file"));
+  EXPECT_TRUE(has(error_message(folder / "a.dng"), "raw file"));
   write_tiff(folder / "a.nef", 8, 1, thumbnail,
              [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_REDUCEDIMAGE); });
-  EXPECT_TRUE(has(error_of(folder / "a.nef"), "raw file"));
+  EXPECT_TRUE(has(error_message(folder / "a.nef"), "raw file"));
   std::string mark("II*\0\x10\0\0\0CR\2\0", 12);
   mark.resize(72, 'x');
-  EXPECT_TRUE(has(error_of(folder.write("a.cr2", mark)), "raw file"));
+  EXPECT_TRUE(has(error_message(folder.write("a.cr2", mark)), "raw file"));
 }
 
 TEST_F(RasterFileTest, PagesAreSaid) {

@@ -12,7 +12,7 @@
 namespace astrolith {
 namespace {
 
-using testing::sum_of;
+using testing::lobe_sum;
 
 // Four lobes: the third is broad enough to wrap around the grid and lies on an axis, the fourth at frequency
 // 0.
@@ -37,15 +37,15 @@ std::vector<SpectralLobe> disturbed(std::vector<SpectralLobe> lobes) {
 }
 
 TEST(LobeMisfit, IsTheSquaredDistance) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 60, 48);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 60, 48);
   const std::vector<SpectralLobe> lobes = disturbed(four_lobes());
   const LobeMisfit misfit(lobes, truth, equal_weights(truth));
   const std::vector<double> start(12, 0.0);
-  EXPECT_NEAR(std::sqrt(misfit(start, {})), optimal_transport_distance(sum_of(lobes, 60, 48), truth), 1e-5);
+  EXPECT_NEAR(std::sqrt(misfit(start, {})), optimal_transport_distance(lobe_sum(lobes, 60, 48), truth), 1e-5);
 }
 
 TEST(LobeMisfit, GradientAgreesWithDifferences) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 60, 48);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 60, 48);
   const LobeMisfit misfit(disturbed(four_lobes()), truth, octave_weights(truth));
   std::vector<double> p(12, 0.0);
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = 0.1 * std::sin(3.0 * static_cast<double>(i));
@@ -62,10 +62,10 @@ TEST(LobeMisfit, GradientAgreesWithDifferences) {
 }
 
 TEST(RefineLobes, FindsTheLobesOfAnExactSpectrum) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 64, 64);
   const std::vector<SpectralLobe> refined = refine_lobes(disturbed(four_lobes()), known(truth)).lobes;
   ASSERT_EQ(refined.size(), 4u);
-  EXPECT_LT(optimal_transport_distance(sum_of(refined, 64, 64), truth), 0.01);
+  EXPECT_LT(optimal_transport_distance(lobe_sum(refined, 64, 64), truth), 0.01);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(refined[i].x, four_lobes()[i].x, 0.05 * lobe_deviation(refined[i].bandwidth));
     EXPECT_NEAR(refined[i].height, four_lobes()[i].height, 0.05 * four_lobes()[i].height);
@@ -73,17 +73,17 @@ TEST(RefineLobes, FindsTheLobesOfAnExactSpectrum) {
 }
 
 TEST(RefineLobes, ThreadsDoNotChangeABit) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 64, 48);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 64, 48);
   const auto refined_with = [&](int threads) {
     const ThreadLimit limit(threads);
-    return sum_of(refine_lobes(disturbed(four_lobes()), known(truth)).lobes, 64, 48).power;
+    return lobe_sum(refine_lobes(disturbed(four_lobes()), known(truth)).lobes, 64, 48).power;
   };
   EXPECT_EQ(refined_with(1), refined_with(4));
 }
 
 // Superfluous lobes are removed, and the lobes that carry the spectrum stay.
 TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 64, 64);
   std::vector<SpectralLobe> lobes = disturbed(four_lobes());
   for (const SpectralLobe& lobe : four_lobes()) {
     for (const double side : {-0.7, 0.7}) {
@@ -96,11 +96,11 @@ TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
   const std::vector<SpectralLobe> few = fewest_lobes(lobes, known(truth), equal_weights(truth)).lobes;
   EXPECT_LE(few.size(), 6u);
   EXPECT_GE(few.size(), 3u);
-  EXPECT_LE(optimal_transport_distance(sum_of(few, 64, 64), truth), 0.03);
+  EXPECT_LE(optimal_transport_distance(lobe_sum(few, 64, 64), truth), 0.03);
 }
 
 TEST(FewestLobes, KeepsTheLobesWhenAskedToStop) {
-  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  const PowerSpectrum truth = lobe_sum(four_lobes(), 64, 64);
   int asked = 0;
   const auto stop = [&](double, std::string_view) { return ++asked < 4; };
   const RefinedLobes at_once = fewest_lobes(disturbed(four_lobes()), known(truth), equal_weights(truth),
@@ -109,8 +109,8 @@ TEST(FewestLobes, KeepsTheLobesWhenAskedToStop) {
   EXPECT_FALSE(at_once.reached || soon.reached);
   EXPECT_EQ(at_once.lobes.size(), 4u);
   EXPECT_EQ(soon.lobes.size(), 4u);
-  EXPECT_LT(optimal_transport_distance(sum_of(soon.lobes, 64, 64), truth),
-            optimal_transport_distance(sum_of(at_once.lobes, 64, 64), truth));
+  EXPECT_LT(optimal_transport_distance(lobe_sum(soon.lobes, 64, 64), truth),
+            optimal_transport_distance(lobe_sum(at_once.lobes, 64, 64), truth));
   EXPECT_EQ(asked, 5);  // the loop asks once more after the minimisation has ended
 }
 
@@ -122,9 +122,9 @@ PowerSpectrum scaled(PowerSpectrum spectrum, double variance) {
 
 // Square roots of Gamma variates: sqrt(pi)/2, 3 sqrt(pi/2)/4 and 1 - 1/(8 m).
 TEST(LobeQuality, KnowsTheScatterOfPeriodograms) {
-  EXPECT_NEAR(mean_root_of_scatter(1.0), 0.886226925, 1e-8);
-  EXPECT_NEAR(mean_root_of_scatter(0.5), 0.75 * std::sqrt(3.14159265358979 / 2.0), 1e-8);
-  EXPECT_NEAR(mean_root_of_scatter(1e-3), 1.0 - 1.25e-4, 1e-7);
+  EXPECT_NEAR(mean_root(1.0), 0.886226925, 1e-8);
+  EXPECT_NEAR(mean_root(0.5), 0.75 * std::sqrt(3.14159265358979 / 2.0), 1e-8);
+  EXPECT_NEAR(mean_root(1e-3), 1.0 - 1.25e-4, 1e-7);
 }
 
 // The true spectrum itself is the perfect model. Its distance from a periodogram is that of speckle alone,
@@ -134,7 +134,7 @@ TEST(LobeQuality, ThePerfectModelIsNeverWeak) {
   double perfect = 0.0;
   for (const testing::NamedSpectrum& truth : testing::known_spectra()) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed, ++count) {
-      const PowerSpectrum periodogram = power_spectrum(testing::realisation_of(truth.spectrum, seed));
+      const PowerSpectrum periodogram = power_spectrum(testing::draw_realisation(truth.spectrum, seed));
       const LobeQuality q = judge_lobes(scaled(truth.spectrum, periodogram.variance()), periodogram, 0.0);
       weak += q.weak();
       perfect += q.periodogram_distance;
@@ -169,7 +169,7 @@ TEST(LobeQuality, MeasuresTheDistanceBehindTheSpeckle) {
   }
   const double distance = std::sqrt(true_square / norm);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const PowerSpectrum periodogram = power_spectrum(testing::realisation_of(truth, seed));
+    const PowerSpectrum periodogram = power_spectrum(testing::draw_realisation(truth, seed));
     const LobeQuality q = judge_lobes(scaled(other, periodogram.variance()), periodogram, 0.0);
     EXPECT_NEAR(q.residual, distance, 0.05);
     EXPECT_TRUE(q.weak());
@@ -182,7 +182,7 @@ TEST(LobeQuality, MeasuresTheDistanceBehindTheSpeckle) {
 TEST(LobeQuality, FewLobesMakeAWeakFit) {
   int weak = 0, weak_with_few = 0, count = 0, above_the_old_limit = 0;
   for (const testing::NamedSpectrum& truth : testing::known_spectra()) {
-    const GreyImage exemplar = testing::realisation_of(truth.spectrum, 1);
+    const GreyImage exemplar = testing::draw_realisation(truth.spectrum, 1);
     weak += fit_gabor_lobes(exemplar, "exemplar", {}).quality.weak();
     GaborFitOptions few;
     few.max_lobes = 1;
@@ -198,7 +198,7 @@ TEST(LobeQuality, FewLobesMakeAWeakFit) {
 
 // The shares of the octaves add up to the whole variance.
 TEST(LobeQuality, OctavesHoldTheWholeVariance) {
-  const PowerSpectrum periodogram = power_spectrum(testing::realisation_of(testing::steep_spectrum(), 1));
+  const PowerSpectrum periodogram = power_spectrum(testing::draw_realisation(testing::steep_spectrum(), 1));
   const LobeQuality q = judge_lobes(periodogram, periodogram, 0.0);
   double photo = 0.0;
   for (const BandVariance& band : q.bands) {
@@ -221,17 +221,17 @@ TEST(LobeVariance, IsTheIntegralOfThePair) {
   const SpectralLobe lobe{4, 0.1, 0.05, 3.0};
   const double deviation = lobe_deviation(4);
   EXPECT_NEAR(lobe_variance(lobe, 128, 96), 2.0 * 3.0 * 2.0 * 3.14159265358979 * deviation * deviation, 1e-9);
-  EXPECT_NEAR(sum_of({lobe}, 128, 96).variance(), lobe_variance(lobe, 128, 96), 1e-6);
+  EXPECT_NEAR(lobe_sum({lobe}, 128, 96).variance(), lobe_variance(lobe, 128, 96), 1e-6);
 }
 
 TEST(SpectrumOf, PeaksWhereTheLobeIsAtItsHeight) {
-  const PowerSpectrum s = sum_of({{5, 8.0 / 64, -4.0 / 48, 2.5}}, 64, 48);
+  const PowerSpectrum s = lobe_sum({{5, 8.0 / 64, -4.0 / 48, 2.5}}, 64, 48);
   EXPECT_NEAR(s.power[44 * 64 + 8], 2.5, 1e-9);
   EXPECT_NEAR(s.power[4 * 64 + 56], 2.5, 1e-9);
 }
 
 TEST(SelectLobes, TakesAwayTheShrinkageOfThePenalty) {
-  const PowerSpectrum truth = sum_of(three_lobes(), 64, 64);
+  const PowerSpectrum truth = lobe_sum(three_lobes(), 64, 64);
   std::vector<SpectralLobe> shrunk = three_lobes();
   for (SpectralLobe& lobe : shrunk) lobe.height *= 0.6;
   const std::vector<SpectralLobe> refitted = select_lobes(shrunk, truth, evenly, 80);
@@ -242,7 +242,7 @@ TEST(SelectLobes, TakesAwayTheShrinkageOfThePenalty) {
 TEST(SelectLobes, RemovesTheOneThatMattersLeast) {
   std::vector<SpectralLobe> lobes = three_lobes();
   lobes.push_back({5, -0.1, 0.35, 1e-3});
-  const PowerSpectrum truth = sum_of(lobes, 64, 64);
+  const PowerSpectrum truth = lobe_sum(lobes, 64, 64);
   const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, evenly, 3);
   ASSERT_EQ(kept.size(), 3u);
   for (const SpectralLobe& lobe : kept) EXPECT_GT(lobe.height, 0.1);
@@ -252,10 +252,10 @@ TEST(SelectLobes, RemovesTheOneThatMattersLeast) {
 TEST(SelectLobes, MergesNeighbours) {
   std::vector<SpectralLobe> lobes = three_lobes();
   lobes.push_back({4, 0.1 + 0.1 * lobe_deviation(4), 0.05, 1.5});
-  const PowerSpectrum truth = sum_of(lobes, 64, 64);
+  const PowerSpectrum truth = lobe_sum(lobes, 64, 64);
   const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, evenly, 3);
   ASSERT_EQ(kept.size(), 3u);
-  EXPECT_LT(optimal_transport_distance(sum_of(kept, 64, 64), truth), 0.05);
+  EXPECT_LT(optimal_transport_distance(lobe_sum(kept, 64, 64), truth), 0.05);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(BorderTaper, TellsAPeriodFromACut) {
   int false_cuts = 0, false_periods = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
-      const GreyImage period = testing::realisation_of(s, seed), cut = period.part(0, 0, 64, 64);
+      const GreyImage period = testing::draw_realisation(s, seed), cut = period.part(0, 0, 64, 64);
       false_cuts += !repeats_along_x(period) + !repeats_along_y(period);
       false_periods += repeats_along_x(cut) + repeats_along_y(cut);
     }
@@ -32,7 +32,7 @@ TEST(BorderTaper, OneStrongStratumOrGrainDoesNotHideACut) {
   int false_periods = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
-      const GreyImage cut = testing::realisation_of(s, seed).part(0, 0, 64, 64);
+      const GreyImage cut = testing::draw_realisation(s, seed).part(0, 0, 64, 64);
       GreyImage upright = cut, level = cut, grain = cut;
       for (int i = 0; i < 64; ++i) {
         upright.values[static_cast<std::size_t>(i * 64 + 20)] += 10.0;
@@ -48,7 +48,7 @@ TEST(BorderTaper, OneStrongStratumOrGrainDoesNotHideACut) {
 
 TEST(BorderTaper, AStrongStratumInAPeriodDoesNotHideIt) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    GreyImage period = testing::realisation_of(testing::steep_spectrum(), seed);
+    GreyImage period = testing::draw_realisation(testing::steep_spectrum(), seed);
     for (int i = 0; i < period.height; ++i)
       period.values[static_cast<std::size_t>(i * period.width + 20)] += 10.0;
     EXPECT_TRUE(repeats_along_x(period) && repeats_along_y(period)) << seed;
@@ -56,15 +56,15 @@ TEST(BorderTaper, AStrongStratumInAPeriodDoesNotHideIt) {
 }
 
 TEST(BorderTaper, LeavesAPeriodAsItIs) {
-  const GreyImage period = testing::realisation_of(testing::four_lobe_spectrum(), 2);
-  const BorderTaper taper = taper_of(period);
+  const GreyImage period = testing::draw_realisation(testing::four_lobe_spectrum(), 2);
+  const BorderTaper taper = make_taper(period);
   EXPECT_DOUBLE_EQ(taper.looks(), 1.0);
   EXPECT_LT(optimal_transport_distance(power_spectrum(faded(period, taper)), power_spectrum(period)), 1e-6);
 }
 
 TEST(BorderTaper, FadesACut) {
-  const GreyImage cut = testing::realisation_of(testing::steep_spectrum(), 3).part(0, 0, 70, 70);
-  const BorderTaper taper = taper_of(cut);
+  const GreyImage cut = testing::draw_realisation(testing::steep_spectrum(), 3).part(0, 0, 70, 70);
+  const BorderTaper taper = make_taper(cut);
   EXPECT_LT(std::abs(faded(cut, taper).at(0, 35)), 0.1 * std::sqrt(sample_variance(cut.values)));
   EXPECT_GT(taper.looks(), 0.7);
   EXPECT_LT(taper.looks(), 1.0);
@@ -138,7 +138,7 @@ TEST(PeriodicComponent, ARampIsAlmostAllSmooth) {
 }
 
 // The mean power of an octave, from `lowest` to twice as many cycles a side.
-double power_of_octave(const PowerSpectrum& s, double lowest) {
+double octave_power(const PowerSpectrum& s, double lowest) {
   double sum = 0.0;
   int bins = 0;
   for (int y = 0; y < s.height; ++y) {
@@ -152,7 +152,7 @@ double power_of_octave(const PowerSpectrum& s, double lowest) {
   return sum / bins;
 }
 
-PowerSpectrum spectrum_of_square(const GreyImage& image) {
+PowerSpectrum square_spectrum(const GreyImage& image) {
   return least_leaky(tapered_power(image, image.width, image.height));
 }
 
@@ -168,10 +168,10 @@ TEST(TaperedPeriodogram, DoesNotLeak) {
     constexpr int kSeeds = 12;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       const testing::CutTexture cut = testing::unscaled_cut(truth, seed);
-      const PowerSpectrum spectrum = spectrum_of_square(cut.image);
+      const PowerSpectrum spectrum = square_spectrum(cut.image);
       for (std::size_t k = 0; k < ratio.size(); ++k) {
         const double lowest = std::ldexp(4.0, static_cast<int>(k));
-        ratio[k] += power_of_octave(spectrum, lowest) / power_of_octave(cut.truth, lowest) / kSeeds;
+        ratio[k] += octave_power(spectrum, lowest) / octave_power(cut.truth, lowest) / kSeeds;
       }
     }
     for (const double r : ratio) EXPECT_NEAR(std::log(r), 0.0, 0.3) << "f^-" << exponent;
@@ -182,25 +182,25 @@ TEST(TaperedPeriodogram, DoesNotLeak) {
 // texture's octaves.
 TEST(TaperedPeriodogram, LeavesARampOut) {
   GreyImage image = testing::unscaled_cut(testing::ring_power, 3).image;
-  const PowerSpectrum bare = spectrum_of_square(image);
+  const PowerSpectrum bare = square_spectrum(image);
   const double variance = sample_variance(image.values);
   EXPECT_NEAR(bare.variance(), variance, 0.05 * variance);
   const double slope = std::sqrt(10.0 * variance * 12.0) / 128.0;
   for (std::size_t i = 0; i < image.values.size(); ++i)
     image.values[i] += slope * static_cast<double>(i % 128);
-  const PowerSpectrum spectrum = spectrum_of_square(image);
+  const PowerSpectrum spectrum = square_spectrum(image);
   EXPECT_NEAR(spectrum.variance(), variance, 0.2 * variance);
-  EXPECT_NEAR(power_of_octave(spectrum, 16.0) / power_of_octave(bare, 16.0), 1.0, 0.1);
+  EXPECT_NEAR(octave_power(spectrum, 16.0) / octave_power(bare, 16.0), 1.0, 0.1);
 }
 
 // A grid of finer frequencies shows the same spectrum.
 TEST(TaperedPeriodogram, OnAFinerGridIsTheSame) {
   const GreyImage cut =
       testing::unscaled_cut([](double fx, double fy) { return 1.0 / (1.0 + fx * fx + fy * fy); }, 4).image;
-  const PowerSpectrum coarse = spectrum_of_square(cut), fine = least_leaky(tapered_power(cut, 256, 256));
+  const PowerSpectrum coarse = square_spectrum(cut), fine = least_leaky(tapered_power(cut, 256, 256));
   EXPECT_NEAR(fine.variance() / coarse.variance(), 1.0, 0.1);
   for (const double lowest : {4.0, 8.0, 16.0, 32.0}) {
-    EXPECT_NEAR(power_of_octave(fine, 2.0 * lowest) / power_of_octave(coarse, lowest), 1.0, 0.1) << lowest;
+    EXPECT_NEAR(octave_power(fine, 2.0 * lowest) / octave_power(coarse, lowest), 1.0, 0.1) << lowest;
   }
 }
 

@@ -25,7 +25,7 @@ TEST(SpectrumEstimate, IsNearerToTheTruthThanTheBestSmoothing) {
     constexpr int kSeeds = 4;
     for (int seed = 1; seed <= kSeeds; ++seed) {
       const PowerSpectrum periodogram =
-          power_spectrum(testing::realisation_of(known.spectrum, static_cast<std::uint64_t>(seed)));
+          power_spectrum(testing::draw_realisation(known.spectrum, static_cast<std::uint64_t>(seed)));
       const SpectrumEstimate estimate = estimate_spectrum(periodogram);
       EXPECT_NEAR(estimate.spectrum.variance(), periodogram.variance(), 1e-9);
       distance += optimal_transport_distance(estimate.spectrum, known.spectrum) / kSeeds;
@@ -42,7 +42,7 @@ TEST(SpectrumEstimate, OfASmoothHeightMapIsNearerThanTheBestSmoothing) {
   constexpr int kSeeds = 8;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const PowerSpectrum periodogram =
-        power_spectrum(testing::realisation_of(testing::smooth_spectrum(), seed));
+        power_spectrum(testing::draw_realisation(testing::smooth_spectrum(), seed));
     distance +=
         optimal_transport_distance(estimate_spectrum(periodogram).spectrum, testing::smooth_spectrum()) /
         kSeeds;
@@ -51,7 +51,7 @@ TEST(SpectrumEstimate, OfASmoothHeightMapIsNearerThanTheBestSmoothing) {
 }
 
 TEST(SpectrumEstimate, TurnsWithTheImage) {
-  const GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 8);
+  const GreyImage image = testing::draw_realisation(testing::four_lobe_spectrum(), 8);
   GreyImage turned = image;
   for (int y = 0; y < 128; ++y) {
     for (int x = 0; x < 128; ++x) turned.values[static_cast<std::size_t>(x * 128 + y)] = image.at(x, y);
@@ -72,9 +72,9 @@ TEST(SpectrumEstimate, TurnsWithTheImage) {
 TEST(SpectrumEstimate, SmoothsWhiteNoiseMoreThanAPeak) {
   PowerSpectrum flat{128, 128, std::vector<double>(128 * 128, 1.0)};
   flat.power[0] = 0.0;
-  const SpectrumEstimate white = estimate_spectrum(power_spectrum(testing::realisation_of(flat, 3)));
+  const SpectrumEstimate white = estimate_spectrum(power_spectrum(testing::draw_realisation(flat, 3)));
   const PowerSpectrum peaked = testing::four_lobe_spectrum();
-  const SpectrumEstimate peaks = estimate_spectrum(power_spectrum(testing::realisation_of(peaked, 3)));
+  const SpectrumEstimate peaks = estimate_spectrum(power_spectrum(testing::draw_realisation(peaked, 3)));
   EXPECT_GE(white.smoothing[5].width_bins, 5.0);
   EXPECT_LE(peaks.smoothing[3].width_bins, 2.5);  // 8 to 16 bins: where the strongest lobe sits
 }
@@ -164,8 +164,8 @@ TEST(PowerSpectrum, LargeExemplarsAreAveragedOverSegments) {
   EXPECT_GT(s.averages, 3.0);
 }
 
-PowerSpectrum periodogram_of(const PowerSpectrum& truth, std::uint64_t seed) {
-  return power_spectrum(testing::realisation_of(truth, seed));
+PowerSpectrum draw_periodogram(const PowerSpectrum& truth, std::uint64_t seed) {
+  return power_spectrum(testing::draw_realisation(truth, seed));
 }
 
 // Smoothing does not change a Gaussian without noise, since its logarithm has no third differences.
@@ -186,7 +186,7 @@ TEST(LogSpectrumSpline, GoesThroughASmoothSpectrum) {
 // At the minimum the score of the likelihood balances the penalty, whose sum over the grid is zero. The mean
 // of I / S over the frequencies with data is therefore one.
 TEST(LogSpectrumSpline, ExplainsThePowerOnAverage) {
-  const PowerSpectrum data = periodogram_of(testing::four_lobe_spectrum(), 4);
+  const PowerSpectrum data = draw_periodogram(testing::four_lobe_spectrum(), 4);
   const LogSpectrumSpline spline(data);
   for (const double w : {1.0, 3.0}) {
     const std::vector<double> g = spline.fit(w);
@@ -197,7 +197,7 @@ TEST(LogSpectrumSpline, ExplainsThePowerOnAverage) {
 }
 
 TEST(LogSpectrumSpline, DoesNotDependOnTheStart) {
-  const PowerSpectrum data = periodogram_of(testing::ring_spectrum(), 5);
+  const PowerSpectrum data = draw_periodogram(testing::ring_spectrum(), 5);
   const LogSpectrumSpline spline(data);
   const std::vector<double> a = spline.fit(2.0);
   const std::vector<double> b = spline.fit(2.0, spline.fit(1.0));
@@ -211,7 +211,7 @@ TEST(LogSpectrumSpline, DoesNotDependOnTheStart) {
 // On white noise the scatter of g about the truth, zero, is as predicted.
 TEST(LogSpectrumSpline, PredictsItsOwnVariance) {
   const PowerSpectrum white = testing::spectrum_from([](double, double) { return 1.0; });
-  PowerSpectrum data = periodogram_of(white, 6);
+  PowerSpectrum data = draw_periodogram(white, 6);
   for (int k = 0; k < 128; ++k) {  // the Nyquist row and column are empty by construction
     data.power[static_cast<std::size_t>(64 * 128 + k)] = data.power[static_cast<std::size_t>(63 * 128 + k)];
     data.power[static_cast<std::size_t>(k * 128 + 64)] = data.power[static_cast<std::size_t>(k * 128 + 63)];
@@ -226,7 +226,7 @@ TEST(LogSpectrumSpline, PredictsItsOwnVariance) {
 }
 
 TEST(LogSpectrumSpline, SpendsFewerParametersTheWider) {
-  const PowerSpectrum data = periodogram_of(testing::ring_spectrum(), 7);
+  const PowerSpectrum data = draw_periodogram(testing::ring_spectrum(), 7);
   const LogSpectrumSpline spline(data);
   double last = 1.0;
   for (const double w : {0.6, 1.2, 2.4, 4.8}) {

@@ -120,7 +120,7 @@ TEST(DetailsFit, RefusesOptionsOutOfRange) {
   EXPECT_THROW(fit_details(target, in_target_frame(target, three_spheres()), quick(0)), InputError);
 }
 
-FractalLayer layer_of(Noise noise, double amplitude, double frequency) {
+FractalLayer make_layer(Noise noise, double amplitude, double frequency) {
   FractalLayer layer;
   layer.noise = noise;
   layer.amplitude = amplitude;
@@ -134,15 +134,15 @@ FractalLayer layer_of(Noise noise, double amplitude, double frequency) {
 std::vector<std::vector<FractalLayer>> swarm() {
   std::vector<std::vector<FractalLayer>> candidates{{}};
   for (int noise = 0; noise < 5; ++noise) {
-    candidates.push_back({layer_of(static_cast<Noise>(noise), 0.002 + 0.001 * noise, 10.0 + 5.0 * noise)});
+    candidates.push_back({make_layer(static_cast<Noise>(noise), 0.002 + 0.001 * noise, 10.0 + 5.0 * noise)});
   }
-  candidates.push_back({layer_of(Noise::kSimplex, 0.004, 8.0), layer_of(Noise::kPerlin, 0.003, 20.0),
-                        layer_of(Noise::kWorleyF1, 0.002, 15.0)});
+  candidates.push_back({make_layer(Noise::kSimplex, 0.004, 8.0), make_layer(Noise::kPerlin, 0.003, 20.0),
+                        make_layer(Noise::kWorleyF1, 0.002, 15.0)});
   return candidates;
 }
 
-void expect_the_scores_of_the_cpu(CandidateEvaluator& evaluator) {
-  const TargetBody target = with_details({layer_of(Noise::kSimplex, 0.03, 4.0)}, 50);
+void expect_cpu_scores(CandidateEvaluator& evaluator) {
+  const TargetBody target = with_details({make_layer(Noise::kSimplex, 0.03, 4.0)}, 50);
   FitnessOptions options;
   options.samples = 500;
   options.lines = 300;
@@ -160,13 +160,13 @@ void expect_the_scores_of_the_cpu(CandidateEvaluator& evaluator) {
 
 TEST(DetailFitness, ASwarmHasTheScoresOfItsCandidates) {
   CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
-  expect_the_scores_of_the_cpu(twin);
+  expect_cpu_scores(twin);
 }
 
 TEST(DetailFitnessOnGpu, ASwarmHasTheScoresOfItsCandidates) {
   const DeviceStatus status = probe_device();
   if (!status.usable) GTEST_SKIP() << "no GPU here: " << status.reason;
-  expect_the_scores_of_the_cpu(*candidates_on_gpu());
+  expect_cpu_scores(*candidates_on_gpu());
 }
 
 DetailRanges some_ranges() { return {8.0, 80.0, 1e-5, 1e-2, 1.0}; }

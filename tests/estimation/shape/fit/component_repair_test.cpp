@@ -16,20 +16,20 @@ MetaballModel hollow_ball() {
 
 TargetBody ball() { return prepare_target(testing::icosphere(3, 0.5 / std::sqrt(3.0)), "ball"); }
 
-ComponentComparison components_of(const TargetBody& target, const MetaballModel& model) {
+ComponentComparison find_components(const TargetBody& target, const MetaballModel& model) {
   return compare_components(target, check_fit(target, metaball_body(model), 64, 1000, 1).mesh);
 }
 
 TEST(ComponentRepair, CavitiesAreFilledAndTheCountStays) {
   const TargetBody target = ball();
   MetaballModel model = hollow_ball();
-  const ComponentComparison before = components_of(target, model);
+  const ComponentComparison before = find_components(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_TRUE(before.strays[0].cavity);
   const std::size_t count = model.spheres.size();
   fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
   EXPECT_EQ(model.spheres.size(), count);
-  EXPECT_TRUE(components_of(target, model).strays.empty());
+  EXPECT_TRUE(find_components(target, model).strays.empty());
 }
 
 TEST(ComponentRepair, SubtractiveMetaballsThatMakeACavityAreRemoved) {
@@ -37,19 +37,19 @@ TEST(ComponentRepair, SubtractiveMetaballsThatMakeACavityAreRemoved) {
   MetaballModel model{3.0, {{{0, 0, 0}, 0.29}, {{0.1, 0, 0}, 0.1, true}}};
   model.spheres.emplace_back(Vec3d{-0.1, 0, 0}, 0.1);
   model.spheres[1].radius = 0.15;
-  const ComponentComparison before = components_of(target, model);
+  const ComponentComparison before = find_components(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_TRUE(before.strays[0].cavity);
   fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
   EXPECT_TRUE(std::none_of(model.spheres.begin(), model.spheres.end(),
                            [](const ModelSphere& s) { return s.subtractive; }));
-  EXPECT_TRUE(components_of(target, model).strays.empty());
+  EXPECT_TRUE(find_components(target, model).strays.empty());
 }
 
 TEST(ComponentRepair, IslandsAreRemoved) {
   const TargetBody target = ball();
   MetaballModel model{3.0, {{{0, 0, 0}, 0.28}, {{0.6, 0, 0}, 0.05}}};
-  const ComponentComparison before = components_of(target, model);
+  const ComponentComparison before = find_components(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_FALSE(before.strays[0].cavity);
   remove_islands(model, before.strays);

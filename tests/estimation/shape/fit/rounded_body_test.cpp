@@ -39,7 +39,7 @@ struct RoughBall {
     options.length_unit = "m";
     options.check_resolution = 32;
   }
-  double distance_of(const MetaballModel& of) const {
+  double model_distance(const MetaballModel& of) const {
     double sum = 0.0;
     for (const double s : model_distances(of, points.on_surface)) sum += std::abs(s);
     return sum / static_cast<double>(points.on_surface.size());
@@ -50,7 +50,7 @@ struct RoughBall {
   }
 };
 
-std::size_t bytes_of(const MetaballBody& body) {
+std::size_t compact_bytes(const MetaballBody& body) {
   Recipe recipe;
   recipe.length_unit = "m";
   recipe.body = body;
@@ -74,8 +74,8 @@ TEST(RoundedBody, KeepsWithinItsBytes) {
   double last = 1.0;
   for (const std::size_t bytes : {140u, 200u, 300u}) {
     const RoundedBody rounded = ball.rounded(bytes);
-    EXPECT_LE(bytes_of(rounded.body), bytes);
-    EXPECT_GT(bytes_of(rounded.body), bytes - 8u);
+    EXPECT_LE(compact_bytes(rounded.body), bytes);
+    EXPECT_GT(compact_bytes(rounded.body), bytes - 8u);
     EXPECT_EQ(rounded.body.num_metaballs(), static_cast<std::size_t>(kMetaballs));
     EXPECT_LT(rounded.mean_distance, last);
     last = rounded.mean_distance;
@@ -88,7 +88,7 @@ TEST(RoundedBody, MakesUpForMostOfTheRounding) {
   const MetaballModel alone = rounded_one_by_one(ball.model, ball.target, kStep);
   const MetaballModel together = ModelRounding(ball.model, ball.points, ball.options.refinement, 1e-2)
                                      .rounded({ball.target.center, ball.target.diagonal}, kStep);
-  EXPECT_LT(ball.distance_of(together), 0.6 * ball.distance_of(alone));
+  EXPECT_LT(ball.model_distance(together), 0.6 * ball.model_distance(alone));
 }
 
 TEST(RoundedBody, NumbersStandOnTheirStep) {
@@ -121,7 +121,7 @@ TEST(RoundedBody, SameForOneAndTwoThreads) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
-std::string json_of(const MetaballBody& body) {
+std::string to_text(const MetaballBody& body) {
   Recipe recipe;
   recipe.length_unit = "m";
   recipe.body = body;
@@ -134,10 +134,10 @@ TEST(RoundedBody, KeepsTheDigitsThatMatter) {
   for (const double loss : {2.0, 0.2, 0.02}) {
     const auto rounded = round_body_to_digits(ball.target, ball.model, ball.points, ball.options, loss);
     ASSERT_TRUE(rounded);
-    EXPECT_LE(rounded->mean_distance, (1.0 + loss) * ball.distance_of(ball.model));
+    EXPECT_LE(rounded->mean_distance, (1.0 + loss) * ball.model_distance(ball.model));
     EXPECT_EQ(rounded->body.num_metaballs(), static_cast<std::size_t>(kMetaballs));
-    EXPECT_GE(json_of(rounded->body).size(), last);
-    last = json_of(rounded->body).size();
+    EXPECT_GE(to_text(rounded->body).size(), last);
+    last = to_text(rounded->body).size();
   }
 }
 
@@ -151,7 +151,7 @@ TEST(RoundedBody, TheDigitsThatMatterAreFewerThanSeven) {
     s.radius *= ball.target.diagonal;
   }
   // This ball is fitted within a few millionths, so that more digits matter than on a body of rock.
-  EXPECT_LT(json_of(rounded->body).size(), json_of(metaball_body(in_file)).size());
+  EXPECT_LT(to_text(rounded->body).size(), to_text(metaball_body(in_file)).size());
 }
 
 TEST(RoundedBody, NoDigitsAreEnoughForNoLoss) {

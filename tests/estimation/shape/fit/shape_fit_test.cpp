@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-TriangleMesh mesh_of(const MetaballBody& body, int resolution) {
+TriangleMesh make_mesh(const MetaballBody& body, int resolution) {
   Recipe recipe;
   recipe.body = body;
   const ImplicitField field(recipe);
@@ -48,7 +48,7 @@ TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
   MetaballBody truth;
   truth.blend_exponent = 2.5;
   truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
-  const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
+  const TargetBody target = prepare_target(make_mesh(truth, 64), "three");
   const ShapeFitResult fit = fit_shape(target, quick(16));
   EXPECT_LT(fit.check.distance.mean, 5e-4);
   EXPECT_LT(fit.check.distance.p99, 3e-3);
@@ -148,7 +148,7 @@ TEST(ShapeFit, ThePlanIsASmoothFunctionOfTheNumberOfMetaballs) {
 TEST(ShapeFit, RefusesOptionsOutOfRange) {
   const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
   EXPECT_TRUE(
-      testing::has(testing::refusal_of([&] { fit_shape(target, quick(0)); }), "spheres: give 1 to 10000"));
+      testing::has(testing::refusal_text([&] { fit_shape(target, quick(0)); }), "spheres: give 1 to 10000"));
 }
 
 TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {

@@ -118,7 +118,7 @@ TEST(ClearanceGrid, APlateKeepsWithinTheLimitOfCells) {
   EXPECT_LE(static_cast<double>(grid.clearance.size()), 1e5);
 }
 
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
@@ -130,7 +130,7 @@ const std::vector<Sphere> kSpheres = {{{1, 2, 3}, 0.2}, {{-1, 0.5, 0}, 0.1}};
 TEST(PackingTable, HoldsCentresAndRadii) {
   const testing::ScratchFolder folder;
   write_packing_table(kSpheres, {"two spheres", "km"}, folder / "p.csv");
-  EXPECT_EQ(lines_of(folder / "p.csv"),
+  EXPECT_EQ(read_lines(folder / "p.csv"),
             (std::vector<std::string>{"# two spheres", "# lengths in km", "x,y,z,radius", "1,2,3,0.2",
                                       "-1,0.5,0,0.1"}));
 }
@@ -138,7 +138,7 @@ TEST(PackingTable, HoldsCentresAndRadii) {
 TEST(PackingTable, MasconsWeighWhatTheBodyWeighs) {
   const testing::ScratchFolder folder;
   write_packing_table(kSpheres, {"two spheres", "km", 0.09, 2000.0}, folder / "p.csv");
-  const std::vector<std::string> lines = lines_of(folder / "p.csv");
+  const std::vector<std::string> lines = read_lines(folder / "p.csv");
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[2], "x,y,z,radius,mass");
   const auto mass = [&](std::size_t line) {

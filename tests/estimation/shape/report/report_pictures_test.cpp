@@ -11,7 +11,7 @@ namespace {
 
 // Bytes 16 to 23 of a PNG hold its width and its height, big-endian.
 std::pair<int, int> png_size(const std::filesystem::path& file) {
-  const std::string png = testing::text_of(file);
+  const std::string png = testing::read_text(file);
   int size[2] = {};
   for (std::size_t i = 0; i < 8; ++i) {
     size[i / 4] = size[i / 4] << 8 | static_cast<unsigned char>(png.at(16 + i));

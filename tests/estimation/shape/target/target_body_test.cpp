@@ -11,8 +11,8 @@ namespace {
 
 using testing::icosphere;
 
-std::string error_of(const TriangleMesh& mesh) {
-  return testing::refusal_of([&] { prepare_target(mesh, "body.obj"); });
+std::string error_message(const TriangleMesh& mesh) {
+  return testing::refusal_text([&] { prepare_target(mesh, "body.obj"); });
 }
 
 TEST(TargetBody, HasDiagonalOneAndKnowsTheWayBack) {
@@ -47,13 +47,13 @@ TEST(TargetBody, WeldsRepeatedVertices) {
 }
 
 TEST(TargetBody, RefusesWhatIsNoBody) {
-  EXPECT_NE(error_of(testing::open_cap(2)).find("body.obj: mesh is open"), std::string::npos);
-  EXPECT_NE(error_of({}).find("body.obj: no face"), std::string::npos);
+  EXPECT_NE(error_message(testing::open_cap(2)).find("body.obj: mesh is open"), std::string::npos);
+  EXPECT_NE(error_message({}).find("body.obj: no face"), std::string::npos);
   TriangleMesh flat = icosphere(2);
   for (Vec3d& p : flat.vertices) p.z *= 1e-9;
-  EXPECT_NE(error_of(flat).find("no volume"), std::string::npos);
+  EXPECT_NE(error_message(flat).find("no volume"), std::string::npos);
   TriangleMesh tiny = icosphere(2, 1e-12);
-  EXPECT_NE(error_of(tiny).find("out of range"), std::string::npos);
+  EXPECT_NE(error_message(tiny).find("out of range"), std::string::npos);
 }
 
 TEST(TargetBody, RefusesASurfaceThroughItself) {
@@ -63,17 +63,17 @@ TEST(TargetBody, RefusesASurfaceThroughItself) {
     const double width = p.z < 0.0 ? 1.0 : 1.0 - 2.3 * p.z;
     p = {p.x * width, p.y, p.z};
   }
-  EXPECT_NE(error_of(bow_tie).find("body.obj: mesh passes through itself"), std::string::npos);
+  EXPECT_NE(error_message(bow_tie).find("body.obj: mesh passes through itself"), std::string::npos);
   const TriangleMesh one_reversed =
       testing::joined(icosphere(2, 2.0), testing::reversed(icosphere(2, 1.0, {5, 0, 0})));
-  EXPECT_NE(error_of(one_reversed).find("has parts inside out"), std::string::npos);
+  EXPECT_NE(error_message(one_reversed).find("has parts inside out"), std::string::npos);
 }
 
 TEST(TargetBody, AcceptsCavitiesAndSeveralComponents) {
   const TriangleMesh hollow = testing::joined(icosphere(3), testing::reversed(icosphere(3, 0.5)));
-  EXPECT_EQ(error_of(hollow), "no error");
-  EXPECT_EQ(error_of(testing::two_spheres(3, 1.0, 2.6)), "no error");
-  EXPECT_EQ(error_of(testing::torus(1.0, 0.3)), "no error");
+  EXPECT_EQ(error_message(hollow), "no error");
+  EXPECT_EQ(error_message(testing::two_spheres(3, 1.0, 2.6)), "no error");
+  EXPECT_EQ(error_message(testing::torus(1.0, 0.3)), "no error");
 }
 
 TEST(TargetBody, OverlappingComponentsBecomeTheirUnion) {
@@ -102,7 +102,7 @@ TEST(TargetBody, ContainmentPointsAreAsDeepAsAsked) {
 using testing::joined;
 using testing::reversed;
 
-TriangleMesh in_frame_of(const TargetBody& target, TriangleMesh mesh) {
+TriangleMesh to_target_frame(const TargetBody& target, TriangleMesh mesh) {
   for (Vec3d& p : mesh.vertices) p = (p - target.center) * (1.0 / target.diagonal);
   return mesh;
 }
@@ -117,7 +117,7 @@ TEST(SurfaceComponents, IslandsAndCavitiesAreStrays) {
   const TargetBody target = prepare_target(icosphere(3), "sphere");
   const TriangleMesh fit =
       joined(joined(reversed(icosphere(2, 0.2, {0.3, 0, 0})), icosphere(3)), icosphere(2, 0.1, {0, 1.5, 0}));
-  const ComponentComparison comparison = compare_components(target, in_frame_of(target, fit));
+  const ComponentComparison comparison = compare_components(target, to_target_frame(target, fit));
   EXPECT_EQ(comparison.missing, 0);
   ASSERT_EQ(comparison.strays.size(), 2u);
   EXPECT_TRUE(comparison.strays[0].cavity);
@@ -129,17 +129,17 @@ TEST(SurfaceComponents, IslandsAndCavitiesAreStrays) {
 
 TEST(SurfaceComponents, LostAndJoinedComponentsAreMissing) {
   const TargetBody target = prepare_target(testing::two_spheres(3, 1.0, 2.6), "pair");
-  EXPECT_EQ(compare_components(target, in_frame_of(target, icosphere(3, 1.0, {-1.3, 0, 0}))).missing, 1);
+  EXPECT_EQ(compare_components(target, to_target_frame(target, icosphere(3, 1.0, {-1.3, 0, 0}))).missing, 1);
   TriangleMesh bar = icosphere(3);
   for (Vec3d& p : bar.vertices) p.x *= 2.3;
-  EXPECT_EQ(compare_components(target, in_frame_of(target, bar)).missing, 1);
+  EXPECT_EQ(compare_components(target, to_target_frame(target, bar)).missing, 1);
 }
 
 TEST(SurfaceComponents, ACavityOfTheTargetIsWanted) {
   const TriangleMesh hollow = joined(icosphere(3), reversed(icosphere(3, 0.5)));
   const TargetBody target = prepare_target(hollow, "hollow");
   EXPECT_EQ(compare_components(target, target.mesh).wrong(), 0);
-  const ComponentComparison solid = compare_components(target, in_frame_of(target, icosphere(3)));
+  const ComponentComparison solid = compare_components(target, to_target_frame(target, icosphere(3)));
   EXPECT_EQ(solid.missing, 1);
   EXPECT_TRUE(solid.strays.empty());
 }
