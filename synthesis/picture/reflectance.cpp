@@ -98,6 +98,12 @@ double hapke(const Reflectance& r, double m0, double m, double phase) {
   return smooth(ground.m0(), ground.m()) * ground.shadowing();
 }
 
+double rolo(const Reflectance& r, double m0, double m, double phase) {
+  const double a = phase * 180.0 / kPi;
+  const double f = r.c0 * portable::exp(-r.c1 * a) + r.a0 + a * (r.a1 + a * (r.a2 + a * (r.a3 + a * r.a4)));
+  return std::max(0.0, f) * m0 / (m0 + m);
+}
+
 struct Number {
   double Reflectance::*value;
   double low, high;
@@ -120,6 +126,16 @@ const std::map<std::string, NamedLaw, std::less<>>& named_laws() {
       {"mcewen", {Law::kLunarLambert, 0.35, {{"L", {&Reflectance::lunar_share, 0.0, 1.0}}}}},
       {"minnaert", {Law::kMinnaert, 0.35, {{"k", {&Reflectance::k, 0.1, 1.0}}}}},
       {"akimov", {Law::kAkimov, 0.35, {}}},
+      {"rolo",
+       {Law::kRolo,
+        0.35,
+        {{"C0", {&Reflectance::c0, 0.0, 10.0}},
+         {"C1", {&Reflectance::c1, 0.0, 10.0}},
+         {"A0", {&Reflectance::a0, 0.0, 10.0}},
+         {"A1", {&Reflectance::a1, -1.0, 1.0}},
+         {"A2", {&Reflectance::a2, -1.0, 1.0}},
+         {"A3", {&Reflectance::a3, -1.0, 1.0}},
+         {"A4", {&Reflectance::a4, -1.0, 1.0}}}}},
       {"hapke",
        {Law::kHapke,
         0.35,
@@ -178,6 +194,8 @@ double reflectance_at(const Reflectance& law, double m0, double m, double phase)
       return minnaert(law.k, m0, m);
     case Reflectance::Law::kAkimov:
       return akimov(m0, m, phase);
+    case Reflectance::Law::kRolo:
+      return rolo(law, m0, m, phase);
     case Reflectance::Law::kHapke:
       return hapke(law, m0, m, phase);
   }
@@ -192,9 +210,10 @@ float pictured_reflectance(const Reflectance& law, float m0, float m, float cos_
   const double phase = angle_of_cosine(double{cos_phase});
   const double value =
       reflectance_at(law, double{std::max(m0, kLeastCosine)}, double{std::max(m, kLeastCosine)}, phase);
-  if (law.law != Reflectance::Law::kHapke) return static_cast<float>(value);
+  if (!is_radiance_factor(law)) return static_cast<float>(value);
   const double midway = std::max(portable::cos(0.5 * phase), double{kLeastCosine});
-  return static_cast<float>(value / reflectance_at(law, midway, midway, phase) * midway);
+  const double of_midway = reflectance_at(law, midway, midway, phase);
+  return of_midway > 0.0 ? static_cast<float>(value / of_midway * midway) : 0.0f;
 }
 
 }  // namespace astrolith

@@ -80,11 +80,19 @@ TEST(Reflectance, HasClosedFormsFromAbove) {
               std::cos(std::numbers::pi / 6.0) * std::cos(1.5 * std::numbers::pi / 6.0), 1e-12);
 }
 
+// Lommel and Seeliger's law with the albedo of the phase angle (Buratti et al. 2011).
+TEST(Reflectance, RoloIsLommelSeeligerWithItsPhaseCurve) {
+  const Reflectance rolo = parse_reflectance("law", "rolo C0 .02 C1 .1 A0 .08 A1 -.0005 A2 2e-6");
+  const double f = 0.02 * std::exp(-3.0) + 0.08 - 0.0005 * 30.0 + 2e-6 * 900.0;
+  EXPECT_NEAR(reflectance_at(rolo, 0.4, 0.7, std::numbers::pi / 6.0), f * 0.4 / 1.1, 1e-12);
+  EXPECT_TRUE(is_radiance_factor(rolo));
+}
+
 TEST(Reflectance, WordsAreChecked) {
   EXPECT_EQ(parse_reflectance("law", "minnaert k .55").k, 0.55);
   EXPECT_EQ(parse_reflectance("law", "lommel-seeliger").lunar_share, 1.0);
   for (const char* words : {"", "oren-nayar", "hapke w 1.2", "hapke w", "hapke theta 70", "rock L .2",
-                            "akimov k 1", "minnaert k .5x"}) {
+                            "akimov k 1", "minnaert k .5x", "hapke w .2 g", "rolo C9 1"}) {
     try {
       parse_reflectance("law", words);
       ADD_FAILURE() << words;
