@@ -20,13 +20,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from astrolith.synthesis import (
+    Camera,
     Craters,
     Description,
     Field,
     Gravity,
     HeightMap,
+    Image,
     Mesh,
+    Ranges,
     Recipe,
+    Scene,
     SurfaceDescription,
     Texture,
     Variation,
@@ -65,14 +69,18 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Camera",
     "Craters",
     "Description",
     "Field",
     "Gravity",
     "HeightMap",
+    "Image",
     "Mesh",
     "Packing",
+    "Ranges",
     "Recipe",
+    "Scene",
     "ShapeFit",
     "SurfaceDescription",
     "Texture",

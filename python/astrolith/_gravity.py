@@ -100,7 +100,7 @@ class Gravity:
         return result
 
 
-def _is_recipe(body: Any) -> bool:
+def is_recipe(body: Any) -> bool:
     if not _arrays.is_file_name(body):
         return isinstance(body, Mapping)
     file = _synthesis.find_body(_arrays.file_name(body, "body"))
@@ -212,7 +212,7 @@ def gravity(
     _arrays.choice(at, "at", ("facets", "vertices"))
     side, apart = _site_lengths(sites, site_size, site_distance, at == "facets" and points is None)
     name, json, arrays, length_unit = "body", "", None, ""
-    if _is_recipe(body):
+    if is_recipe(body):
         json, name = json_of(body, "body")
         if unit is not None:
             raise ValueError("unit: a recipe states its own; leave the argument out")

@@ -14,19 +14,24 @@ from astrolith._mesh import Mesh, mesh_formats, read_mesh, write_mesh
 from astrolith._meshing import mesh, predict
 from astrolith._picture import render
 from astrolith._recipe import Recipe, library
+from astrolith._scene import Camera, Image, Ranges, Scene
 from astrolith._surface import Craters, SurfaceDescription, describe_surface, find_craters, realism
 from astrolith._synth import synth
 from astrolith._texture import Texture, texture
 from astrolith._variation import Variation, draw, vary
 
 __all__ = [
+    "Camera",
     "Craters",
     "Description",
     "Field",
     "Gravity",
     "HeightMap",
+    "Image",
     "Mesh",
+    "Ranges",
     "Recipe",
+    "Scene",
     "SurfaceDescription",
     "Texture",
     "Variation",

@@ -9,6 +9,7 @@ void bind_field(nanobind::module_& module);        // the field of a recipe at m
 void bind_gravity(nanobind::module_& module);      // of meshes and of the bodies of recipes
 void bind_height_maps(nanobind::module_& module);  // patches as heights over their mean plane
 void bind_meshes(nanobind::module_& module);       // of recipes and of files
+void bind_scene(nanobind::module_& module);        // bodies that stay, their pictures and ranges
 void bind_synth(nanobind::module_& module);        // the job of the program
 
 }  // namespace astrolith::python

@@ -325,5 +325,6 @@ NB_MODULE(_synthesis, module) {
   bind_products(module);
   bind_gravity(module);
   bind_height_maps(module);
+  bind_scene(module);
   bind_synth(module);
 }

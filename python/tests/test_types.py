@@ -9,7 +9,7 @@ import sys
 
 import astrolith
 import pytest
-from astrolith import _gravity, _mesh, _packing, _recipe
+from astrolith import _gravity, _mesh, _packing, _recipe, _scene
 from astrolith.bridges import datasets
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -39,7 +39,7 @@ def test_mypy_finds_nothing_in_the_examples_of_the_page(tmp_path):
     mypy(tmp_path, "--no-warn-unused-ignores", "page.py")
 
 
-@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, _mesh, _packing, datasets])
+@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, _mesh, _packing, _scene, datasets])
 def test_examples_of_docstrings(module):
     assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
 

@@ -68,4 +68,16 @@ bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
   return ray.tfar < 0.0f;
 }
 
+void RayScene::visit_near(const Vec3f& point, float radius,
+                          const std::function<void(std::uint32_t)>& visit) const {
+  RTCPointQuery query{point.x, point.y, point.z, 0, radius};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto call = [](RTCPointQueryFunctionArguments* arguments) {
+    (*static_cast<const std::function<void(std::uint32_t)>*>(arguments->userPtr))(arguments->primID);
+    return false;  // the radius stays
+  };
+  rtcPointQuery(scene_.handle(), &query, &context, call, const_cast<void*>(static_cast<const void*>(&visit)));
+}
+
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "geometry/surface/triangle_scene.h"
 #include "geometry/triangle_mesh.h"
@@ -26,6 +27,8 @@ class RayScene {
   // Origins and directions are in the unit ball; directions have unit length. Queries may run in parallel.
   RayHit first_hit(const Vec3f& origin, const Vec3f& direction) const;
   bool occluded(const Vec3f& origin, const Vec3f& direction) const;
+  // Calls visit(triangle) for every triangle whose box comes within `radius` of a point of the unit ball.
+  void visit_near(const Vec3f& point, float radius, const std::function<void(std::uint32_t)>& visit) const;
 
   // Maps a position of the mesh into the unit ball.
   Vec3d to_unit(const Vec3d& p) const { return scene_.to_scene(p); }

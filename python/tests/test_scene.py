@@ -1,0 +1,161 @@
+"""Scenes: cameras against the written formula, ranges against the triangles, bodies with poses, and what is refused."""
+
+import threading
+
+import astrolith
+import numpy as np
+import pytest
+from test_surface import sphere
+
+SUN = (1.0, 0.4, 0.3)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    """A sphere of radius 1 with a normal albedo of .05."""
+    return astrolith.Scene(sphere(60), albedo=0.05)
+
+
+def camera(**changes):
+    return astrolith.Camera(96, 64, 150.0, **changes).look_at((4.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def distorted(camera, matrix, points):
+    """Brown's distortion, as OpenCV writes it."""
+    x, y, z = matrix @ (np.asarray(points) - camera.position).T
+    x, y, r2 = x / z, y / z, (x * x + y * y) / z**2
+    k1, k2, p1, p2, k3 = camera.distortion
+    s = 1 + k1 * r2 + k2 * r2**2 + k3 * r2**3
+    u = x * s + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+    v = y * s + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+    return np.stack([camera.fx * u + camera.skew * v + camera.cx, camera.fy * v + camera.cy], axis=1)
+
+
+def test_a_camera_follows_the_formula():
+    q = np.array([0.8, 0.1, -0.5, 0.3]) / np.linalg.norm([0.8, 0.1, -0.5, 0.3])
+    given = dict(fx=800.0, fy=810.0, cx=310.0, cy=242.0, skew=2.0, distortion=(-0.28, 0.09, 0.001, -0.0007, -0.01))
+    made = astrolith.Camera(640, 480, position=(1.0, 2.0, 3.0), rotation=q, **given)
+    w, x, y, z = q
+    matrix = np.array(  # the quaternion's matrix, as spiceypy.q2m has it
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    seen = np.array([[0.3, -0.2, 1.0], [-0.3, 0.25, 1.0], [0.0, 0.0, 1.0]]) * [[2.0], [50.0], [7.0]]
+    points = seen @ matrix + made.position
+    np.testing.assert_allclose(made.project(points), distorted(made, matrix, points), atol=1e-9)
+    spice = astrolith.Camera(640, 480, position=(1.0, 2.0, 3.0), rotation=matrix.T, axes="spice", **given)
+    np.testing.assert_allclose(spice.project(points), made.project(points), atol=1e-9)
+    assert np.isnan(made.project(made.position - seen @ matrix)).all()
+
+
+def test_pixels_show_the_points_that_project_to_them(ball):
+    made = ball.image(camera(), SUN)
+    row, column = np.nonzero(made.body == 0)
+    depth = made.depth[row, column]
+    disk = np.pi * (150 / np.sqrt(15)) ** 2  # pixels of the whole disk, of which the picture's height shows most
+    assert 0.85 * disk < len(row) < disk and 3.0 <= depth.min() < 3.01
+    along = np.stack([-np.ones(len(row)), (column - 47.5) / 150, -(row - 31.5) / 150], axis=1)
+    points = [4.0, 0, 0] + depth[:, None] * along
+    np.testing.assert_allclose(camera().project(points), np.stack([column, row], axis=1), atol=1e-9)
+    ranges = ball.ranges((4.0, 0.0, 0.0), along)
+    np.testing.assert_allclose(ranges.range, depth * np.linalg.norm(along, axis=1), rtol=1e-13)
+    assert (ranges.facet == made.facet[row, column]).mean() > 0.98  # some pixels are on edges
+
+
+def test_light_is_that_of_the_law(ball):
+    sun = np.array(SUN) / np.linalg.norm(SUN)
+    for law, value in (("lambert", lambda m0, m: m0), ("lommel-seeliger", lambda m0, m: 2 * m0 / (m0 + m))):
+        made = ball.image(camera(), SUN, reflectance=law)
+        m0, m = np.cos(np.radians([made.incidence, made.emission]))
+        np.testing.assert_allclose(made.normal @ sun, m0, atol=1e-6)
+        lit = (m0 > 0.05) & (m > 0.05)
+        np.testing.assert_allclose(made.radiance[lit], 0.05 * value(m0, m)[lit], rtol=1e-4)
+        assert (made.radiance[m0 < 0] == 0).all() and (made.radiance[made.body < 0] == 0).all()
+    fine = ball.image(camera(), SUN, reflectance="lambert", oversampling=4)
+    assert fine.radiance.sum() == pytest.approx(ball.image(camera(), SUN, reflectance="lambert").radiance.sum(), rel=5e-3)
+
+
+def test_bodies_move_and_eclipse():
+    large, (vertices, faces) = sphere(40), sphere(20)
+    scene = astrolith.Scene([large, (0.2 * vertices, faces)])
+    scene.pose(1, position=(2.0, 0.8, 0.6))
+    dark = scene.image(camera(), SUN).radiance.sum()
+    scene.pose(1, position=(0.0, 50.0, 0.0))
+    assert dark < 0.99 * scene.image(camera(), SUN).radiance.sum()
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    scene.pose(0, rotation=turn, position=(10.0, 0, 0))
+    moved = scene.ranges([[20.0, 0.1, 0.2]], [[-1.0, 0, 0]])
+    scene.pose(0)
+    assert moved.range == pytest.approx(scene.ranges(turn.T @ [10.0, 0.1, 0.2], [turn.T @ [-1.0, 0, 0]]).range, rel=1e-14)
+
+
+def test_threads_do_not_change_the_arrays(ball):
+    one, two = (ball.image(camera(), SUN, oversampling=2, threads=n) for n in (1, 2))
+    for name in vars(one):
+        np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
+    rays = np.random.default_rng(1).standard_normal((5000, 3))
+    first, second = (ball.ranges((0.0, 0.0, 3.0), rays, noise=0.1, beam=1.0, threads=n) for n in (1, 2))
+    np.testing.assert_array_equal(first.range, second.range)
+    made = [None] * 4
+    workers = [threading.Thread(target=lambda k=k: made.__setitem__(k, ball.image(camera(), SUN))) for k in range(4)]
+    [worker.start() for worker in workers], [worker.join() for worker in workers]
+    for image in made:
+        np.testing.assert_array_equal(image.radiance, made[0].radiance)
+
+
+def test_ranges_are_those_of_spice(tmp_path):
+    spice = pytest.importorskip("spiceypy")
+    vertices, faces = sphere(30, noise=0.02)
+    body = astrolith.Mesh(vertices, faces, length_unit="km")
+    file = tmp_path / "ball.bds"
+    astrolith.bridges.write_dsk(body, file, body=2000001, frame="J2000")
+    handle = spice.dasopr(str(file))
+    try:
+        descriptor = spice.dlabfs(handle)
+        rng = np.random.default_rng(1)
+        origins = 5.0 * (lambda v: v / np.linalg.norm(v, axis=1)[:, None])(rng.standard_normal((500, 3)))
+        directions = rng.uniform(-0.5, 0.5, (500, 3)) - origins
+        made = astrolith.Scene((vertices, faces)).ranges(origins, directions)
+        for origin, direction, distance, facet in zip(origins, directions, made.range, made.facet):
+            plate, point, found = spice.dskx02(handle, descriptor, origin, direction)
+            assert found and plate == facet + 1
+            assert np.linalg.norm(point - origin) == pytest.approx(distance, rel=1e-9)
+    finally:
+        spice.dascls(handle)
+
+
+def test_a_recipe_is_meshed():
+    body = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 1]]}
+    scene = astrolith.Scene({"format_version": 1, "length_unit": "km", "body": body}, resolution=24)
+    assert scene.ranges((9.0, 0, 0), [[-1.0, 0, 0]]).range == pytest.approx(8.0, abs=0.2)
+    assert repr(scene) == "<astrolith.Scene: 1 body>"
+
+
+@pytest.mark.parametrize(
+    "words, call",
+    [
+        ("sun: 0 0 0 is no direction", lambda s: s.image(camera(), (0, 0, 0))),
+        ("inside body 0", lambda s: s.image(astrolith.Camera(8, 8, 8.0), SUN)),
+        ("camera.width: must be from 1 to 16384", lambda s: s.image(astrolith.Camera(0, 8, 8.0), SUN)),
+        ("distortion folds", lambda s: s.image(camera(distortion=[-9.0]), SUN)),
+        ("camera: rotation: is no rotation", lambda s: s.image(astrolith.Camera(8, 8, 8.0, rotation=np.ones((3, 3))), SUN)),
+        ("the quaternion has the length 2", lambda s: s.pose(rotation=(2, 0, 0, 0))),
+        ("mirrors", lambda s: s.pose(rotation=np.diag([1, 1, -1]))),
+        ("camera.axes: must be one of opencv, spice", lambda s: s.image(astrolith.Camera(8, 8, 8.0, axes="x"), SUN)),
+        ("body: must be from 0 to 0", lambda s: s.pose(1)),
+        ("row 0 is 0 0 0", lambda s: s.ranges((9.0, 0, 0), [[0.0, 0, 0]])),
+        ("2 origins and 1 directions", lambda s: s.ranges(np.ones((2, 3)), np.ones((1, 3)))),
+        ("beam: must be from 0 to 10", lambda s: s.ranges((9.0, 0, 0), [[1.0, 0, 0]], beam=11)),
+        ("is no law of reflection", lambda s: s.image(camera(), SUN, reflectance="shiny")),
+        ("albedo: has the shape", lambda s: astrolith.Scene(sphere(8), albedo=[0.1, 0.2])),
+        ("resolution: are for recipes", lambda s: astrolith.Scene(sphere(8), resolution=9)),
+        ("up: is along the boresight", lambda s: camera().look_at((0, 0, 4), (0, 0, 0))),
+    ],
+)
+def test_what_cannot_be_is_refused(ball, words, call):
+    with pytest.raises(ValueError, match=words) as refusal:
+        call(ball)
+    assert "\n" not in str(refusal.value)
