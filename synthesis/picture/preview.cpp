@@ -188,11 +188,14 @@ class Painter {
     if (incidence <= 0.0f) return 0.0f;
     const Vec3f towards = normalized(sun.direction + place.sun_x * sun.first + place.sun_y * sun.second);
     if (scene_.occluded(start, towards)) return 0.0f;
-    return pictured_reflectance(options_.reflectance, incidence, facing, dot(to_viewer, sun.direction));
+    const float cos_phase = dot(to_viewer, sun.direction);
+    return options_.keep_radiance ? radiance_factor(options_.reflectance, incidence, facing, cos_phase)
+                                  : pictured_reflectance(options_.reflectance, incidence, facing, cos_phase);
   }
 
   // Light from a sky that is brightest behind the viewer keeps slopes legible in shadows.
   float ambient(float facing) const {
+    if (options_.keep_radiance) return 0.0f;
     return static_cast<float>(options_.ambient) * (0.25f + 0.75f * facing * facing);
   }
 
@@ -230,7 +233,11 @@ class SrgbTable {
 class BandPainter {
  public:
   BandPainter(const Painter& painter, const PreviewOptions& options, RgbaImage16& image)
-      : painter_(painter), options_(options), image_(image), shown_(static_cast<std::size_t>(image.height)) {}
+      : painter_(painter), options_(options), image_(image), shown_(static_cast<std::size_t>(image.height)) {
+    if (options.keep_radiance) radiance_.resize(image.pixels.size() / 4 * 3);
+  }
+
+  std::vector<float> radiance() { return std::move(radiance_); }
 
   void paint(int first, int end) {
     first_probe_ = std::max(0, first - 1);
@@ -280,6 +287,11 @@ class BandPainter {
   void paint_pixel(int x, int y, int end_probe) {
     const Seen seen = options_.oversampling == 1 || is_even(x, y, end_probe) ? probes_[index(x, y)].seen
                                                                              : painter_.pixel(x, y);
+    if (options_.keep_radiance) {
+      float* const radiance =
+          &radiance_[3 * (static_cast<std::size_t>(y) * columns() + static_cast<std::size_t>(x))];
+      radiance[0] = seen.light.x, radiance[1] = seen.light.y, radiance[2] = seen.light.z;
+    }
     const float open = 1.0f - seen.cover;
     const Vec3f light = options_.transparent
                             ? (seen.cover > 0.0f ? (1.0f / seen.cover) * seen.light : Vec3f{})
@@ -293,6 +305,7 @@ class BandPainter {
   const Painter& painter_;
   const PreviewOptions& options_;
   RgbaImage16& image_;
+  std::vector<float> radiance_;
   SrgbTable srgb_;
   int first_probe_ = 0;
   std::vector<Probe> probes_;
@@ -341,7 +354,7 @@ RenderedPicture render_picture(const TriangleMesh& mesh, const PreviewOptions& o
     }
   }
   painter.draw_marks(image);
-  return {std::move(image), bands.empty_views()};
+  return {std::move(image), bands.radiance(), bands.empty_views()};
 }
 
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {

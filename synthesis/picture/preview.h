@@ -56,7 +56,10 @@ struct PreviewOptions {
   // The linear-light albedo (sRGB components in [0, 1], colormap.h) at each vertex, or empty for neutral
   // grey.
   std::vector<Vec3<float>> vertex_colors;
-  SurfaceMaps maps;                                   // none: the mesh as it is
+  SurfaceMaps maps;  // none: the mesh as it is
+  // Whether the picture is also kept as I/F: the law itself in place of what is pictured of it, times the
+  // albedo, without ambient light.
+  bool keep_radiance = false;
   Vec3<float> background{0.0030f, 0.0034f, 0.0048f};  // linear-light sRGB
   bool transparent = false;                           // no background
   std::uint64_t seed = 1;                             // decides where samples lie within pixels
@@ -64,6 +67,7 @@ struct PreviewOptions {
 
 struct RenderedPicture {
   RgbaImage16 image;
+  std::vector<float> radiance;  // (height x width x 3) I/F, 0 beside the mesh; empty where it is not kept
   std::vector<std::size_t> empty_views;  // those whose pixels, seen in their middles, all miss the mesh
 };
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr float kLeastCosine = 1e-3f;
 
-double angle_of_cosine(double c) {
+double arc_cosine(double c) {
   const double cosine = std::clamp(c, -1.0, 1.0);
   return portable::atan2(std::sqrt(1.0 - cosine * cosine), cosine);
 }
@@ -49,7 +49,7 @@ class RoughGround {
     const double sines = i.sine * e.sine;
     const double cos_psi =
         sines > 1e-12 ? std::clamp((portable::cos(phase) - m0 * m) / sines, -1.0, 1.0) : 1.0;
-    const double psi = angle_of_cosine(cos_psi), half = 0.5 * (1.0 - cos_psi);  // sin^2(psi / 2)
+    const double psi = arc_cosine(cos_psi), half = 0.5 * (1.0 - cos_psi);  // sin^2(psi / 2)
     const bool sun_is_higher = m0 >= m;
     const Slant &low = sun_is_higher ? e : i, &high = sun_is_higher ? i : e;
     const double below = 2.0 - low.e1 - psi / kPi * high.e1;
@@ -202,12 +202,17 @@ double reflectance_at(const Reflectance& law, double m0, double m, double phase)
   return 0.0;
 }
 
+float radiance_factor(const Reflectance& law, float m0, float m, float cos_phase) {
+  return static_cast<float>(reflectance_at(law, double{std::max(m0, kLeastCosine)},
+                                           double{std::max(m, kLeastCosine)}, arc_cosine(double{cos_phase})));
+}
+
 float pictured_reflectance(const Reflectance& law, float m0, float m, float cos_phase) {
   if (law.law == Reflectance::Law::kLunarLambert) {
     const auto lunar = static_cast<float>(law.lunar_share);
     return lunar * 2.0f * m0 / (m0 + std::max(m, kLeastCosine)) + (1.0f - lunar) * m0;
   }
-  const double phase = angle_of_cosine(double{cos_phase});
+  const double phase = arc_cosine(double{cos_phase});
   const double value =
       reflectance_at(law, double{std::max(m0, kLeastCosine)}, double{std::max(m, kLeastCosine)}, phase);
   if (!is_radiance_factor(law)) return static_cast<float>(value);

@@ -51,6 +51,9 @@ inline bool is_radiance_factor(const Reflectance& law) {
 // the others the ratio to ground that is seen and lit from above, whose albedo is 1.
 double reflectance_at(const Reflectance& law, double m0, double m, double phase);
 
+// reflectance_at() for cosines as rays meet them. Cosines of emission below a thousandth count as that.
+float radiance_factor(const Reflectance& law, float m0, float m, float cos_phase);
+
 // What pictures show of it: laws that are I/F over their own value where ground faces midway between the sun
 // and the viewer, times the cosine there. The phase curve and the albedo are left out so that pictures need
 // no exposure. Cosines of emission below a thousandth count as that.

@@ -70,7 +70,7 @@ def runs(folder):
     yield ["synth", eroded, *mesh, *features, "--min-component", "0.1", "--gravity", "2000", "5"]
     yield ["synth", body, *mesh, "--even", "--lod", "2"]
     yield ["synth", body, "-o", folder / "mesh.glb", "--resolution", "16", "--uv", "charts", "--bake", "64"]
-    yield ["render", folder / "mesh.ply", "-o", folder / "body.png", "--color", "z"]
+    yield ["render", folder / "mesh.ply", "-o", folder / "body.png", "--color", "z", "--light-curve", folder / "l.csv"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
     for k in (1, 2):
         yield ["synth", body, *mesh[:-1], "32", "--tile", f"{k}/2"]

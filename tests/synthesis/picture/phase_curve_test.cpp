@@ -15,18 +15,18 @@ constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
 
 Vec3d direction(double degrees) { return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0.0}; }
 
-DiskOptions options_of(const std::string& words) { return {parse_reflectance("law", words), 1.0}; }
+DiskOptions white_law(const std::string& words) { return {parse_reflectance("law", words), 1.0}; }
 
 TEST(DiskLight, SpheresFollowLambertAndLommelSeeliger) {
   const TriangleMesh sphere = testing::icosphere(6, 2.0);
   for (const double phase : {0.0, 10.0, 45.0, 90.0, 130.0}) {
     const double a = phase * kDegree, disk = kPi * 4.0;
     const double lambert = 2.0 / 3.0 * (std::sin(a) + (kPi - a) * std::cos(a)) / kPi;
-    EXPECT_NEAR(disk_light(sphere, options_of("lambert"), direction(phase), direction(0)) / disk, lambert,
+    EXPECT_NEAR(disk_light(sphere, white_law("lambert"), direction(phase), direction(0)) / disk, lambert,
                 1e-3);
     const double seeliger =
         phase > 0.0 ? 1.0 - std::sin(a / 2) * std::tan(a / 2) * std::log(1.0 / std::tan(a / 4)) : 1.0;
-    EXPECT_NEAR(disk_light(sphere, options_of("lommel-seeliger"), direction(phase), direction(0)) / disk,
+    EXPECT_NEAR(disk_light(sphere, white_law("lommel-seeliger"), direction(phase), direction(0)) / disk,
                 seeliger, 1e-3);
   }
 }
@@ -38,7 +38,7 @@ TEST(DiskLight, AWhiteSphereSendsBackAllLight) {
   constexpr int kSteps = 90;
   for (int k = 0; k < kSteps; ++k) {
     const double phase = 180.0 * (k + 0.5) / kSteps;
-    sum += 2.0 * disk_light(sphere, options_of("lambert"), direction(phase), direction(0)) / kPi *
+    sum += 2.0 * disk_light(sphere, white_law("lambert"), direction(phase), direction(0)) / kPi *
            std::sin(phase * kDegree) * kPi / kSteps;
   }
   EXPECT_NEAR(sum, 1.0, 2e-3);
@@ -63,7 +63,7 @@ TEST(DiskLight, EllipsoidsFollowLommelSeeliger) {
                            std::sin(lambda) * std::sin(lambda - alpha) *
                                std::log(1.0 / std::tan(lambda / 2) / std::tan((alpha - lambda) / 2));
     const double exact = kPi * half.x * half.y * half.z * s0 * s1 / both * bracket;
-    EXPECT_NEAR(disk_light(ellipsoid, options_of("lommel-seeliger"), sun, viewer) / exact, 1.0, 2e-3);
+    EXPECT_NEAR(disk_light(ellipsoid, white_law("lommel-seeliger"), sun, viewer) / exact, 1.0, 2e-3);
   }
 }
 
@@ -71,13 +71,13 @@ TEST(DiskLight, HasTheSameBitsForThreadsAndTurns) {
   TriangleMesh body = testing::icosphere(4, 1.0);
   for (Vec3d& v : body.vertices) v.x *= 2.0;
   const ThreadLimit one(1);
-  const std::vector<double> light = light_curve(body, options_of("lambert"), 30.0, 4);
+  const std::vector<double> light = light_curve(body, white_law("lambert"), 30.0, 4);
   EXPECT_NEAR(light[0], light[2], 1e-3);  // symmetric
   EXPECT_GT(light[1], 1.5 * light[0]);
-  const std::vector<PhasePoint> curve = phase_curve(body, options_of("lambert"), {30.0});
+  const std::vector<PhasePoint> curve = phase_curve(body, white_law("lambert"), {30.0});
   EXPECT_GT(curve[0].greatest, 1.5 * curve[0].least);
   const ThreadLimit two(2);
-  EXPECT_EQ(light_curve(body, options_of("lambert"), 30.0, 4), light);
+  EXPECT_EQ(light_curve(body, white_law("lambert"), 30.0, 4), light);
 }
 
 // The absolute magnitude of a sphere of 1 km and albedo .2 by Fowler and Chillemi (1992), 1329 km / D.

@@ -1,6 +1,9 @@
 // render: pictures of meshes, in the colours of a property.
 #include "tasks/description/description_jobs.h"
 
+#include <cmath>
+#include <sstream>
+
 #include "tests/tasks/job_runner.h"
 
 namespace astrolith {
@@ -35,14 +38,50 @@ TEST_F(Render, DrawsMeshesInTheColoursOfAProperty) {
   EXPECT_TRUE(in_metres == picture(""));
 }
 
+TEST_F(Render, ShowsTheColoursOfThePly) {
+  const std::string grey = picture("");
+  std::string ply = text("v.ply");
+  for (const char* end : {"1\n1", "2\n0", "3\n0", "9\n3"})
+    ply.replace(ply.find(end), 1, std::string(1, end[0]) + " 200 40 40");
+  ply.replace(ply.find("property int age_s\n"), 19,
+              "property int age_s\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n");
+  write("v.ply", ply);
+  EXPECT_FALSE(grey == picture(""));
+}
+
+// A tetrahedron seen along +x shows the slanted facet: S is its area times m r.
+TEST_F(Render, WritesRadianceAndCurves) {
+  succeed("v.ply -o p.png --picture-size 200x160 --radiance p.tif --normal-albedo .5 --reflectance lambert");
+  EXPECT_EQ(text("p.tif").size() > 200 * 160 * 12, true);
+  const auto summary = figures(
+      "v.ply --unit km --phase-curve phase.csv --light-curve light.csv --period 6 --normal-albedo .5 "
+      "--reflectance lambert");
+  EXPECT_GT(summary["light_curve_amplitude"], 0.0);
+  std::istringstream phases(text("phase.csv")), light(text("light.csv"));
+  std::string head, row;
+  std::getline(phases, head);
+  EXPECT_EQ(head.rfind("phase_deg,light,light_least,light_greatest,magnitude", 0), 0u);
+  std::getline(light, head);
+  std::getline(light, row);
+  EXPECT_EQ(head, "rotation,hours,light,magnitude");
+  const double exact = std::sqrt(0.75) * 0.5 / 3.0;  // area, albedo, the squared cosine
+  EXPECT_NEAR(std::stod(row.substr(4)), exact, 1e-6) << row;
+}
+
 TEST_F(Render, RefusesWhatCannotBeDrawn) {
   write("o.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   refuse("o.obj -o q.png --color age", "o.obj: has no properties of vertices; give a .ply");
   refuse("v.ply -o q.jpg", "q.jpg");
+  refuse("v.ply", "--output: is required");
+  refuse("v.ply --phase-curve c.csv --radiance r.tif", "--radiance: is of the picture");
   refuse_all("v.ply -o q.png ",
              {{"--color slope", "v.ply: the vertices have no property 'slope'; choose from x, y, z, age_s"},
               {"--color age_s --range 2 2", "--range"},
               {"--picture-size 0x0", "--picture-size"},
+              {"--radiance r.png", ".tif"},
+              {"--phase-curve r.txt", ".csv"},
+              {"--normal-albedo 2", "--normal-albedo"},
+              {"--period 2", "--period requires --light-curve"},
               {"--picture-size 1000000x1000000", "--picture-size"},
               {"--sun 0 0 0", "--sun"},
               {"--camera \"at .1 .1 .1 target 1 1 1 fov 30\"", "stands inside the body"}});
