@@ -12,6 +12,12 @@ from astrolith._mesh import MeshLike, arrays_of, surface_of
 from astrolith._options import Progress
 
 
+def linear_light(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.float64]:
+    """The linear light, 0 to 1, of colours in sRGB of 8 bits."""
+    encoded = np.asarray(colors) / 255.0
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
 def render(
     mesh: MeshLike,
     *,
@@ -66,8 +72,7 @@ def render(
     """
     own = getattr(mesh, "colors", None)
     if colors is None and own is not None:
-        encoded = np.asarray(own) / 255.0
-        colors = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+        colors = linear_light(own)
     # Colours belong to the vertices as they are.
     arrays = surface_of(mesh, "mesh") if colors is None else arrays_of(mesh, "mesh")
     directions = [_arrays.vector(view, "views") for view in _arrays.items(views, "views")]

@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
 from astrolith._gravity import is_recipe
-from astrolith._mesh import MeshLike, surface_of
+from astrolith._mesh import Mesh, MeshLike, surface_of
 from astrolith._meshing import mesh as mesh_recipe
 from astrolith._options import Progress
-from astrolith._recipe import RecipeLike
+from astrolith._picture import linear_light
+from astrolith._recipe import RecipeLike, json_of, records
 
 RotationLike = Any
 """A (3, 3) rotation matrix, or a unit quaternion (w, x, y, z), the scalar first, as in SPICE."""
@@ -39,6 +40,16 @@ def _matrix(rotation: RotationLike, name: str) -> npt.NDArray[np.float64]:
     if array.shape != (3, 3) or not np.isfinite(array).all():
         raise ValueError(f"{name}: must be a (3, 3) matrix or a quaternion (w, x, y, z), and is {_arrays.shown(rotation)}")
     return array
+
+
+def _normal_albedo(mesh: Mesh, recipe: RecipeLike) -> Optional[npt.NDArray[np.float64]]:
+    """The normal albedo of a recipe's vertices, from the colours that show it for viewing (docs/recipe.md)."""
+    stated = mesh.figures.get("albedo") or records(json_of(recipe, "bodies")[0]).get("albedo")
+    if not stated or mesh.colors is None:
+        return None
+    shown = 0.36 * (stated["normal"] / 0.1) ** (1 / 3)
+    albedo: npt.NDArray[np.float64] = stated["normal"] / shown * linear_light(mesh.colors).mean(axis=1)
+    return albedo
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -205,8 +216,9 @@ class Scene:
         A mesh or a recipe, or a list of them; a pair (vertices, faces) is a mesh. All have one unit of length, which is
         that of the scene. Each stands in the pose of its own axes until :meth:`pose` moves it.
     albedo
-        The normal albedo: a number, (n) numbers for the vertices, or a list of either, one for each body. None: I/F is
-        that of the law of reflection alone.
+        The normal albedo: a number, (n) numbers for the vertices, a word of ``synth --albedo`` for recipes, such as
+        "bennu", or a list of these, one for each body. None: that of the recipe, from the 8 bits of its colours; without
+        one I/F is that of the law of reflection alone.
     options
         How recipes are meshed: options of :func:`mesh`, such as ``triangles=1_000_000``.
 
@@ -246,7 +258,10 @@ class Scene:
         for k, (body, value) in enumerate(zip(given, albedos)):
             name = f"bodies[{k}]" if isinstance(bodies, list) else "bodies"
             if is_recipe(body):
-                body = mesh_recipe(body, threads=threads, progress=progress, **options)
+                words = {"albedo": value} if isinstance(value, str) else {}
+                made = mesh_recipe(body, threads=threads, progress=progress, **words, **options)
+                value = _normal_albedo(made, body) if value is None or words else value
+                body = made
             elif options and not any(is_recipe(b) for b in given):
                 raise ValueError(f"{', '.join(options)}: are for recipes, and {name} is a mesh; leave them out")
             self._add(body, value, name, threads, progress)
@@ -256,6 +271,8 @@ class Scene:
         arrays = surface_of(body, name)
         values = None
         if albedo is not None:
+            if isinstance(albedo, str):
+                raise ValueError(f"albedo: {_arrays.shown(albedo)} is a word for recipes, and {name} is a mesh; give numbers")
             values = np.asarray(albedo, np.float32)
             if values.ndim == 0:
                 values = np.full(len(arrays.vertices), values)
@@ -267,7 +284,13 @@ class Scene:
     def __repr__(self) -> str:
         return f"<astrolith.Scene: {self._size} {'body' if self._size == 1 else 'bodies'}>"
 
-    def pose(self, body: int = 0, *, rotation: RotationLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), position: Sequence[float] = (0, 0, 0)) -> None:
+    def pose(
+        self,
+        body: int = 0,
+        *,
+        rotation: RotationLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+        position: Sequence[float] = (0, 0, 0),
+    ) -> None:
         """Move a body: its point p stands at ``rotation @ p + position``.
 
         Parameters
@@ -367,7 +390,7 @@ class Scene:
         towards = _arrays.rows(directions, "directions", empty=True)
         places = np.asarray(origins)
         if places.ndim == 1:
-            places = np.tile(np.array(_arrays.vector(origins, "origins")), (len(towards), 1))
+            places = np.array([_arrays.vector(origins, "origins")])
         return Ranges(
             **self._scene.ranges(
                 _arrays.rows(places, "origins", empty=True),

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,14 +70,21 @@ Named image(const Scene& scene, int width, int height, const std::array<double, 
   return result;
 }
 
+// The rows of an array, in place.
+std::span<const Vec3d> vectors_in_place(const Rows<double>& rows) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  return {reinterpret_cast<const Vec3d*>(rows.data()), rows.shape(0)};
+}
+
 Named ranges(const Scene& scene, const Rows<double>& origins, const Rows<double>& directions, double noise,
              double beam, std::uint64_t seed, int threads, nb::object progress) {
   const RangeOptions options{noise, beam, seed};
-  SceneRanges made =
-      run_job(std::move(progress), threads,
-              [=, from = points_of(origins), towards = points_of(directions)](JobState& state) {
-                return scene.ranges(from, towards, options, state.progress("ranges"));
-              });
+  SceneRanges made = run_job(
+      std::move(progress), threads,
+      [=, from = vectors_in_place(origins), towards = vectors_in_place(directions)](JobState& state) {
+        return scene.ranges(from, towards, options, state.progress("ranges"));
+      },
+      true);
   const std::size_t n = made.range.size();
   Named result;
   result["range"] = array_of<double>(std::move(made.range), {n});

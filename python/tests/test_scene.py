@@ -132,6 +132,9 @@ def test_a_recipe_is_meshed():
     scene = astrolith.Scene({"format_version": 1, "length_unit": "km", "body": body}, resolution=24)
     assert scene.ranges((9.0, 0, 0), [[-1.0, 0, 0]]).range == pytest.approx(8.0, abs=0.2)
     assert repr(scene) == "<astrolith.Scene: 1 body>"
+    # The albedo of its ground, from the colours of its mesh.
+    made = astrolith.Scene("bennu", albedo="bennu", resolution=48).image(astrolith.Camera(64, 64, 150.0).look_at((1, 0, 0), (0, 0, 0)), (1, 0, 0))
+    assert 0.03 < np.median(made.radiance[made.body == 0]) < 0.06
 
 
 @pytest.mark.parametrize(
@@ -147,10 +150,11 @@ def test_a_recipe_is_meshed():
         ("camera.axes: must be one of opencv, spice", lambda s: s.image(astrolith.Camera(8, 8, 8.0, axes="x"), SUN)),
         ("body: must be from 0 to 0", lambda s: s.pose(1)),
         ("row 0 is 0 0 0", lambda s: s.ranges((9.0, 0, 0), [[0.0, 0, 0]])),
-        ("2 origins and 1 directions", lambda s: s.ranges(np.ones((2, 3)), np.ones((1, 3)))),
+        ("2 origins and 3 directions", lambda s: s.ranges(np.ones((2, 3)), np.ones((3, 3)))),
         ("beam: must be from 0 to 10", lambda s: s.ranges((9.0, 0, 0), [[1.0, 0, 0]], beam=11)),
         ("is no law of reflection", lambda s: s.image(camera(), SUN, reflectance="shiny")),
         ("albedo: has the shape", lambda s: astrolith.Scene(sphere(8), albedo=[0.1, 0.2])),
+        ("is a word for recipes", lambda s: astrolith.Scene(sphere(8), albedo="bennu")),
         ("resolution: are for recipes", lambda s: astrolith.Scene(sphere(8), resolution=9)),
         ("up: is along the boresight", lambda s: camera().look_at((0, 0, 4), (0, 0, 0))),
     ],

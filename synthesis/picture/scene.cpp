@@ -381,11 +381,12 @@ void Scene::measure(std::size_t i, const Vec3d& origin, const Vec3d& towards, co
   if (options.noise > 0) made.range[i] += options.noise * CounterRandom(options.seed, i).normal();
 }
 
-SceneRanges Scene::ranges(const std::vector<Vec3d>& origins, const std::vector<Vec3d>& directions,
+SceneRanges Scene::ranges(std::span<const Vec3d> origins, std::span<const Vec3d> directions,
                           const RangeOptions& options, const Progress& progress) const {
-  if (origins.size() != directions.size()) {
-    throw InputError(fmt::format("ranges: {} origins and {} directions; give one of each for a ray",
-                                 origins.size(), directions.size()));
+  if (origins.size() != directions.size() && origins.size() != 1) {
+    throw InputError(
+        fmt::format("ranges: {} origins and {} directions; give one origin, or one for each direction",
+                    origins.size(), directions.size()));
   }
   if (!(options.noise >= 0 && options.noise <= 1e18) || !(options.beam >= 0 && options.beam <= 10)) {
     throw InputError("ranges: noise must be at least 0, and a beam 0 to 10 degrees across");
@@ -394,7 +395,7 @@ SceneRanges Scene::ranges(const std::vector<Vec3d>& origins, const std::vector<V
     if (squared_norm(directions[i]) > 0) continue;
     throw InputError(fmt::format("directions: row {} is 0 0 0, which is no direction; give another", i));
   }
-  const std::size_t n = origins.size();
+  const std::size_t n = directions.size();
   SceneRanges made{std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()),
                    std::vector<float>(n, kUnknown), std::vector<std::int32_t>(n, -1),
                    std::vector<std::int16_t>(n, -1)};
@@ -403,7 +404,7 @@ SceneRanges Scene::ranges(const std::vector<Vec3d>& origins, const std::vector<V
   reported_parallel_for({0, chunks, chunks}, progress, "ranges", [&](std::int64_t chunk) {
     const std::size_t begin = static_cast<std::size_t>(chunk * kChunk);
     for (std::size_t i = begin; i < std::min(n, begin + kChunk); ++i) {
-      measure(i, origins[i], directions[i], options, made);
+      measure(i, origins[origins.size() == 1 ? 0 : i], directions[i], options, made);
     }
   });
   return made;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -74,10 +75,11 @@ class Scene {
   SceneImage image(const SceneCamera& camera, const Vec3d& sun, const SceneImageOptions& options = {},
                    const Progress& progress = {}) const;
 
-  // Directions have any length above 0. The triangle that single precision finds is intersected again in
-  // double precision: ranges are those to its plane but for 1e-15 of the size of its body. Throws InputError
-  // for unequal numbers of origins and directions, for a direction 0 0 0 and for options out of range.
-  SceneRanges ranges(const std::vector<Vec3d>& origins, const std::vector<Vec3d>& directions,
+  // There is one origin for each direction, or one for all. Directions have any length above 0. The triangle
+  // that single precision finds is intersected again in double precision: ranges are those to its plane but
+  // for 1e-15 of the size of its body. Throws InputError for another number of origins, for a direction 0 0 0
+  // and for options out of range, and WorkError when progress asks to stop.
+  SceneRanges ranges(std::span<const Vec3d> origins, std::span<const Vec3d> directions,
                      const RangeOptions& options = {}, const Progress& progress = {}) const;
 
  private:

@@ -32,6 +32,11 @@ Vec3d direction_to_sphere(CounterRandom& random) {
   return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
 }
 
+SceneRanges range_along(const Scene& scene, const Vec3d& origin, const Vec3d& direction,
+                        const RangeOptions& options = {}) {
+  return scene.ranges({&origin, 1}, {&direction, 1}, options);
+}
+
 TEST(Scene, RangesAreThoseOfTheTrianglesInDoublePrecision) {
   // The octahedron |x| + |y| + |z| = 1, turned and moved.
   Scene scene;
@@ -106,8 +111,8 @@ TEST(Scene, NoiseAndBeamsHaveTheirWidths) {
   EXPECT_NEAR(std::sqrt(square), 0.5, 0.02);
   // Within a cone of half angle t the mean of the range r / cos is r (1 + t^2 / 4).
   const double half = 2.0 * std::numbers::pi / 180;
-  EXPECT_NEAR(scene.ranges({origins[0]}, {directions[0]}, {0, 4.0, 1}).range[0], 100 * (1 + half * half / 4),
-              0.003);
+  EXPECT_NEAR(range_along(scene, origins[0], directions[0], {0, 4.0, 1}).range[0],
+              100 * (1 + half * half / 4), 0.003);
 }
 
 TEST(Scene, SphereReflectsByItsLaw) {
@@ -177,10 +182,10 @@ TEST(Scene, PicturesAreTheSameForAllThreadsAndPoses) {
   // A copy has poses of its own.
   Scene moved = scene;
   moved.place(0, {kIdentity3, {0, 5, 0}});
-  EXPECT_EQ(scene.ranges({{4, 0, 0}}, {{-1, 0, 0}}).body[0], 0);
-  EXPECT_EQ(moved.ranges({{4, 0, 0}}, {{-1, 0, 0}}).body[0], -1);
-  EXPECT_EQ(moved.ranges({{4, 5, 0}}, {{-1, 0, 0}}).range[0],
-            scene.ranges({{4, 0, 0}}, {{-1, 0, 0}}).range[0]);
+  EXPECT_EQ(range_along(scene, {4, 0, 0}, {-1, 0, 0}).body[0], 0);
+  EXPECT_EQ(range_along(moved, {4, 0, 0}, {-1, 0, 0}).body[0], -1);
+  EXPECT_EQ(range_along(moved, {4, 5, 0}, {-1, 0, 0}).range[0],
+            range_along(scene, {4, 0, 0}, {-1, 0, 0}).range[0]);
 }
 
 TEST(SceneCamera, DistortionIsUndone) {
@@ -207,7 +212,7 @@ TEST(Scene, RefusesWhatCannotBe) {
   EXPECT_TRUE(has(refusal_text([&] { scene.image(outside, {0, 0, 0}); }), "sun: 0 0 0 is no direction"));
   EXPECT_TRUE(has(refusal_text([&] { scene.image(camera_on_x(0.5, 100), {1, 0, 0}); }), "inside body 0"));
   EXPECT_TRUE(has(refusal_text([&] { scene.image(outside, {1, 0, 0}, {{}, 17, true}); }), "oversampling"));
-  EXPECT_TRUE(has(refusal_text([&] { scene.ranges({{2, 0, 0}}, {{0, 0, 0}}); }), "row 0 is 0 0 0"));
+  EXPECT_TRUE(has(refusal_text([&] { range_along(scene, {2, 0, 0}, {0, 0, 0}); }), "row 0 is 0 0 0"));
   EXPECT_TRUE(has(refusal_text([&] { scene.place(1, {}); }), "there is no body 1"));
   EXPECT_TRUE(has(refusal_text([&] {
                     scene.place(0, {{{{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});
