@@ -1,10 +1,12 @@
 """Scenes: cameras against the written formula, ranges against the triangles, bodies with poses, and what is refused."""
 
+import re
 import threading
 
 import astrolith
 import numpy as np
 import pytest
+from conftest import ROOT
 from test_surface import sphere
 
 SUN = (1.0, 0.4, 0.3)
@@ -135,6 +137,14 @@ def test_a_recipe_is_meshed():
     # The albedo of its ground, from the colours of its mesh.
     made = astrolith.Scene("bennu", albedo="bennu", resolution=48).image(astrolith.Camera(64, 64, 150.0).look_at((1, 0, 0), (0, 0, 0)), (1, 0, 0))
     assert 0.03 < np.median(made.radiance[made.body == 0]) < 0.06
+
+
+def test_the_descent_of_the_page_ends_above_the_ground(capsys):
+    page = (ROOT / "docs" / "cameras.md").read_text()
+    (code,) = [code for mark, code in re.findall(r"(<!-- not run.*?-->\n)?```python\n(.*?)```", page, re.DOTALL) if not mark]
+    exec(compile(code.replace("triangles=2e5", "resolution=48"), "cameras.md", "exec"), {})
+    count, altitude = re.match(r"(\d+) pictures, \d+ steps; ([\d.]+) m above", capsys.readouterr().out).groups()
+    assert int(count) == 8 and 19 < float(altitude) < 20
 
 
 @pytest.mark.parametrize(
