@@ -25,6 +25,13 @@ struct GroundAlbedo {
   Vec3d color{1, 1, 1};  // each in [0, 4]
   double steep = 1.0;    // factor on a slope of 45 degrees against the bare body, [0.1, 10]: t ~ 1 - cos
   std::optional<AlbedoByElevation> elevation = std::nullopt;
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    if (!elevation) return;
+    elevation->from *= ratio;
+    elevation->to *= ratio;
+  }
 };
 
 // What a layer of noise does to the ground. With `normal` it covers the ground by its weight; `contrast` adds

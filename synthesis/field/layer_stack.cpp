@@ -103,7 +103,7 @@ class LayerStack {
   void add_noise(const Kind& kind) {
     const Layer& layer = stack_.layer();
     const bool moves = has_height(layer);
-    if (!moves && !paints(layer)) return;
+    if (!moves && !paints(layer) && !kind.use.albedo) return;
     FieldModel& model = stack_.model;
     const LayerSource source{stack_.recipe, layer_number(kind.seed, stack_.index), stack_.place()};
     const LayerMaker maker = layer_maker(layer, source, model.arrays);

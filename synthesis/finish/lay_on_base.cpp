@@ -85,10 +85,17 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   }
   const double ratio = length_ratio(details, details_name, base, base_name, lengths);
   Recipe result = base;
+  if (!result.albedo && details.albedo) {
+    result.albedo = details.albedo;
+    result.albedo->rescale(ratio);
+  }
   if (find_relief(details) != nullptr) std::erase_if(result.layers, is_unnamed_relief);
   for (const Layer& layer : details.layers) {
     result.layers.push_back(rescaled(details.body ? drawn_from(*details.body, layer) : layer, ratio));
   }
+  if (!result.albedo && std::ranges::any_of(result.layers, has_albedo))
+    throw InputError(base_name + ": albedo: absent, and a layer of " + details_name +
+                     " changes that of the ground; state it in one of both");
   return result;
 }
 

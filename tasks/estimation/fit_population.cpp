@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -217,6 +218,17 @@ Recipe begun_population(const PopulationOptions& options) {
   return recipe;
 }
 
+// Refuses before any fit what would make no population.
+void check_models(const PopulationOptions& options, std::size_t bodies_before) {
+  std::set<std::string> names;
+  for (const fs::path file : options.models) {
+    if (!names.insert(file.stem().string()).second)
+      throw InputError("models: " + file.stem().string() + " is given twice; give each body once");
+  }
+  if (names.size() + bodies_before < 2)
+    throw InputError("models: are one; give two or more, between which bodies are drawn");
+}
+
 nlohmann::ordered_json to_json(const MeasuredBody& body) {
   return {{"name", body.name},
           {"class", std::string(class_word(body.kind))},
@@ -230,6 +242,7 @@ void fit_population(Job& job, PopulationOptions& options) {
   require_writable(options.output);
   Recipe recipe = begun_population(options);
   options.unit = recipe.length_unit;
+  check_models(options, recipe.population->bodies.size());
   const BodyTable table(options.table);
   for (const fs::path file : options.models) {
     const std::string model = file.stem().string();

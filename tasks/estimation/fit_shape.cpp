@@ -359,6 +359,7 @@ FittedShape fit_shape(Job& job, FitArguments& arguments) {
   if (with_details && !job.stopped() && limit.allows_more()) {
     add_details(job, arguments, target, limit, checkpoint, fit, recipe);
   }
+  arguments.albedo.apply(job, recipe);
   job.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   if (!job.stopped()) add_similarity(job, target, arguments.fit.seed, fit);
   if (job.stopped()) {

@@ -11,6 +11,7 @@
 #include "estimation/shape/packing/sphere_packing.h"
 #include "estimation/shape/target/target_body.h"
 #include "numerics/progress.h"
+#include "tasks/job/albedo_option.h"
 #include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
 #include "tasks/repair/shape_repair.h"
@@ -100,6 +101,7 @@ struct FitArguments {
   bool packing_only = false;
   int bytes = 0;         // of the whole compact recipe, at most; 0 = any. fit.bytes are those of its body
   double density = 0.0;  // kg / m^3; 0 = no masses
+  AlbedoOption albedo;
   ShapeFitOptions fit;
   DetailArguments details;
   ShapeRepair repair;

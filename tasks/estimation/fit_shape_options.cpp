@@ -130,8 +130,9 @@ void declare_fit_options(Job& job, FitArguments& arguments) {
   declare_detail_options(job, arguments.details);
   declare_run_options(job.options, arguments);
   declare_packing_options(job.options, arguments);
+  arguments.albedo.add_to(job.options);
   Option bytes = job.options.option("--bytes");
-  for (const char* option : {"--packing-only", "--variations", "--micro", "--relief-spacing"}) {
+  for (const char* option : {"--packing-only", "--variations", "--micro", "--relief-spacing", "--albedo"}) {
     bytes.excludes(job.options.option(option));
   }
 }

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 // The image for which charts are padded where no maps are baked.
 constexpr int kUsualMap = 2048;
+constexpr int kCoarseMap = 128;  // below, seams of charts show on levels of detail
 constexpr std::array<const char*, 7> kMapWords{"normal", "height", "occlusion", "curvature",
                                                "label",  "color",  "albedo"};
 
@@ -149,6 +150,11 @@ void add_skins(Job& job, const MeshSinks& sinks, const MeshPart& part, const Sur
   std::vector<TextureAtlas> atlases;
   for (std::size_t level = 0; level < levels.size(); ++level)
     atlases.push_back(make_level_atlas(*levels[level].mesh, sinks, level));
+  const int coarsest = level_side(sinks, levels.size() - 1);
+  if (sinks.bake > 0 && levels.size() > 1 && coarsest < kCoarseMap)
+    job.say(fmt::format("note: maps of level {} have {} x {} texels; --bake {} gives them {}",
+                        levels.size() - 1, coarsest, coarsest, kCoarseMap << (levels.size() - 1),
+                        kCoarseMap));
   job.summary["charts"] = nlohmann::ordered_json::array();
   if (sinks.bake > 0) job.summary["maps"] = nlohmann::ordered_json::array();
   for (std::size_t level = 0; level < levels.size(); ++level) {

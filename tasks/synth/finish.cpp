@@ -2,17 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string>
-
 #include "numerics/errors.h"
-#include "synthesis/finish/known_albedo.h"
 #include "synthesis/finish/known_population.h"
 
 namespace astrolith {
 namespace {
-
-constexpr const char* kDrawnAlbedo = "drawn";
 
 // Which sizes of a layer are measured, in words.
 std::string measured_words(const FinishLayer& layer, const std::string& unit) {
@@ -68,11 +62,6 @@ Recipe with_landforms(Job& job, const FinishOptions& options, const Recipe& reci
   return std::move(finish.recipe);
 }
 
-KnownAlbedo chosen_albedo(const std::string& name, std::uint64_t seed) {
-  if (name == kDrawnAlbedo) return drawn_albedo(seed);
-  return *std::ranges::find(known_albedos(), name, &KnownAlbedo::name);
-}
-
 }  // namespace
 
 void declare_finish_options(Job& job, FinishOptions& options) {
@@ -100,15 +89,7 @@ void declare_finish_options(Job& job, FinishOptions& options) {
       .needs(finish)
       .default_text("")
       .placeholder("SIZE");
-  job.options
-      .add_option(
-          "--albedo", options.albedo,
-          "how bright the ground, its craters and its boulders are, as on a known body: bennu, ryugu, "
-          "itokawa, eros, 67p, vesta, or drawn, which is that of a near-Earth asteroid by the recipe's "
-          "seed; replaces the recipe's own")
-      .check(one_of({"bennu", "ryugu", "itokawa", "eros", "67p", "vesta", kDrawnAlbedo}))
-      .default_text("")
-      .placeholder("BODY");
+  options.albedo.add_to(job.options);
 }
 
 void check_finish(const FinishOptions& options) {
@@ -120,11 +101,7 @@ void check_finish(const FinishOptions& options) {
 Recipe finished(Job& job, const FinishOptions& options, const Recipe& recipe, const std::string& file,
                 double patch_side) {
   Recipe made = options.wanted() ? with_landforms(job, options, recipe, file, patch_side) : recipe;
-  if (options.albedo.empty()) return made;
-  const KnownAlbedo known = chosen_albedo(options.albedo, made.seed);
-  set_albedo(made, known);
-  job.summary["albedo"] = {
-      {"name", options.albedo}, {"normal", known.ground.normal}, {"source", std::string(known.source)}};
+  options.albedo.apply(job, made);
   return made;
 }
 

@@ -5,15 +5,16 @@
 #include <string>
 
 #include "recipe/recipe.h"
+#include "tasks/job/albedo_option.h"
 #include "tasks/job/job.h"
 
 namespace astrolith {
 
 struct FinishOptions {
-  std::string body;         // of --finish; empty or "none": nothing is added
-  double from = 0.0;        // length units; 0: the recipe's finest size
-  double to = 0.0;          // length units
-  std::string albedo = {};  // a name of known_albedos() or "drawn"; empty: the recipe's own
+  std::string body;   // of --finish; empty or "none": nothing is added
+  double from = 0.0;  // length units; 0: the recipe's finest size
+  double to = 0.0;    // length units
+  AlbedoOption albedo = {};
 
   bool wanted() const { return !body.empty() && body != "none"; }
 };

@@ -5,6 +5,7 @@
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/finish/known_albedo.h"
 #include "synthesis/landforms/boulder_field.h"
 #include "synthesis/landforms/population.h"
 #include "tests/support/refusal.h"
@@ -121,6 +122,30 @@ TEST(KnownPopulation, PatchesHaveTheirBoulders) {
   }
   const double expected = 78.54 * finish.layers.front().density;
   EXPECT_NEAR(inside, expected, 4.0 * std::sqrt(expected) + 0.03 * expected);
+}
+
+// Wright et al. 2016: a quarter dark, with means of Rayleigh's distributions, sqrt(pi / 2) times .030 and .168.
+TEST(KnownAlbedo, DrawsAlbedosOfNearEarthAsteroids) {
+  double dark = 0.0, sum = 0.0;
+  constexpr int kDraws = 4000;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const KnownAlbedo drawn = drawn_albedo(seed);
+    sum += drawn.ground.normal / kDraws;
+    if (drawn.craters.fresh < 1.18) dark += 1.0 / kDraws;  // as Bennu's
+  }
+  EXPECT_NEAR(dark, 0.253, 0.02);
+  EXPECT_NEAR(sum, 1.2533 * (0.253 * 0.030 + 0.747 * 0.168), 0.005);
+}
+
+TEST(KnownAlbedo, TakesThePlaceOfAnother) {
+  Recipe recipe = testing::sphere_recipe(2.0);
+  recipe.layers = {CraterLayer{}, BoulderLayer{}};
+  for (const KnownAlbedo& known : known_albedos()) set_albedo(recipe, known);
+  ASSERT_EQ(recipe.layers.size(), 3u);  // with one layer of mottles
+  EXPECT_EQ(recipe.albedo->normal, 0.38);
+  EXPECT_EQ(std::get<BoulderLayer>(recipe.layers[1]).albedo->normal, 0.38);
+  EXPECT_EQ(std::get<FractalLayer>(recipe.layers[2]).use.combination.kind, Combine::kMask);
+  validate_recipe(recipe, "r");
 }
 
 }  // namespace

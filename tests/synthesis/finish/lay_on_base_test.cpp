@@ -7,6 +7,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/noise/fractal_noise.h"
 #include "tests/support/refusal.h"
+#include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
 
 namespace astrolith {
@@ -149,6 +150,24 @@ TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
   EXPECT_TRUE(testing::has(refused(details, "edges"), "base: layers: hold no relief"));
   EXPECT_TRUE(testing::has(refused(bumps("m", 1.0), "body"), "details: body: absent"));
   EXPECT_TRUE(testing::has(refused(details, "feet"), "must be units, body or edges"));
+}
+
+TEST(LayOnBase, AlbedoIsThatOfTheBaseOrElseOfTheLayers) {
+  Recipe base = testing::sphere_recipe(1.0), details;
+  base.length_unit = "km";
+  details.length_unit = "m";
+  details.albedo = GroundAlbedo{0.2, {1, 1, 1}, 1.0, AlbedoByElevation{0.0, -50.0, 0.5}};
+  FractalLayer dust = testing::fractal_layer(1.0, 0.1, 1);
+  dust.use.albedo = LayerAlbedo{.contrast = 0.5};
+  details.layers = {dust};
+  const auto laid = [&] { return lay_on_base(details, "d", base, "b", BaseLengths::kUnits); };
+  EXPECT_EQ(laid().albedo->normal, 0.2);
+  EXPECT_NEAR(laid().albedo->elevation->to, -0.05, 1e-12);
+  base.albedo = GroundAlbedo{0.04};
+  EXPECT_EQ(laid().albedo->normal, 0.04);
+  base.albedo.reset();
+  details.albedo.reset();
+  EXPECT_THROW(laid(), InputError);
 }
 
 }  // namespace

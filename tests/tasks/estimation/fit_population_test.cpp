@@ -70,7 +70,8 @@ TEST_F(FitPopulation, RefusesWhatIsNoMeasuredBody) {
       "layers.json",
       R"({"format_version": 1, "length_unit": "m", "layers": [{"type": "simplex", "amplitude": 1, "frequency": 1}]})");
   refuse("layers.json potato.json -o p.json", "has no body");
-  refuse("potato.json -o p.json", "must be at least 2");
+  refuse("potato.json -o p.json", "give two or more");
+  refuse("potato.json ./potato.json -o p.json", "potato is given twice");
   write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   refuse("open.obj potato.json -o p.json", "open.obj");
   write("t.csv", "who,source\na,b\n");
