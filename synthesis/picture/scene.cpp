@@ -300,7 +300,8 @@ class ScenePixels {
     const int n = options_.oversampling;
     double sum = 0;
     for (int k = 0; k < n * n; ++k) {
-      const double across = (k % n + 0.5) / n - 0.5, down = (k / n + 0.5) / n - 0.5;
+      const int column = k % n, row = k / n;
+      const double across = (column + 0.5) / n - 0.5, down = (row + 0.5) / n - 0.5;
       const Vec3d direction = camera_.direction({middle.column + across, middle.row + down});
       const Scene::Hit hit = scene_.first_hit(camera_.position(), direction);
       if (hit.found()) sum += double{radiance(look_at_ground(hit, direction))};

@@ -205,6 +205,31 @@ TEST(SceneCamera, DistortionIsUndone) {
   EXPECT_FALSE(camera.project({10, 0, 0}));
 }
 
+TEST(SceneCamera, AnswersInTheWholePictureOrIsRefused) {
+  CounterRandom random(3);
+  int taken = 0;
+  double worst = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double strong = k % 4 == 0 ? 3 : 1;
+    const auto number = [&](double most) { return strong * random.uniform(-most, most); };
+    Calibration c;
+    c.fx = c.fy = random.uniform(300, 2000);
+    c.cx = random.uniform(0, 1023), c.cy = random.uniform(0, 1023), c.skew = number(10);
+    c.k1 = number(0.5), c.k2 = number(0.3), c.p1 = number(0.02), c.p2 = number(0.02), c.k3 = number(0.1);
+    if (refusal_text([&] { SceneCamera(c, {}, kIdentity3); }) != "no error") continue;
+    ++taken;
+    const SceneCamera camera(c, {}, kIdentity3);
+    for (int i = 0; i < 100; ++i) {
+      const ImagePoint place{random.uniform(-0.5, 1023.5), random.uniform(-0.5, 1023.5)};
+      const ImagePoint seen = camera.project(camera.direction(place)).value();
+      worst = std::max({worst, std::fabs(seen.column - place.column), std::fabs(seen.row - place.row)});
+    }
+  }
+  EXPECT_GT(taken, 200);
+  EXPECT_LT(taken, 320);
+  EXPECT_LT(worst, 1e-9) << "pixels";
+}
+
 TEST(Scene, RefusesWhatCannotBe) {
   Scene scene;
   scene.add(icosphere(3));
