@@ -121,10 +121,12 @@ def test_ranges_are_those_of_spice(tmp_path):
         origins = 5.0 * (lambda v: v / np.linalg.norm(v, axis=1)[:, None])(rng.standard_normal((500, 3)))
         directions = rng.uniform(-0.5, 0.5, (500, 3)) - origins
         made = astrolith.Scene((vertices, faces)).ranges(origins, directions)
-        for origin, direction, distance, facet in zip(origins, directions, made.range, made.facet):
+        for k, (origin, direction) in enumerate(zip(origins, directions)):
             plate, point, found = spice.dskx02(handle, descriptor, origin, direction)
-            assert found and plate == facet + 1
-            assert np.linalg.norm(point - origin) == pytest.approx(distance, rel=1e-9)
+            assert found and plate == made.facet[k] + 1
+            assert np.linalg.norm(point - origin) == pytest.approx(made.range[k], rel=1e-9)
+            angle = spice.vsep(spice.dskn02(handle, descriptor, plate), -direction)
+            assert np.degrees(angle) == pytest.approx(made.incidence[k], abs=1e-4)
     finally:
         spice.dascls(handle)
 
