@@ -239,7 +239,16 @@ int marks_height(const PreviewOptions& options) {
 namespace {
 
 constexpr int kRingDots = 512;
-constexpr double kRingLift = 0.05;  // radii above the ground, so that few dots lie below the surface
+constexpr double kRingLift = 0.01;  // radii above the ground, so that few dots lie below the surface
+
+// The ground below a place of the ring's circle or above it, by at most a radius; none where there is none.
+std::optional<Vec3d> draped(const PlaceRing& ring, const Vec3d& outwards, const RayScene& scene) {
+  const Vec3d start = scene.to_unit(ring.center + ring.radius * (outwards + ring.normal));
+  const RayHit hit = scene.first_hit(to_float(start), to_float(-ring.normal));
+  const double radius = ring.radius * scene.scale();
+  if (!hit.found || double{hit.distance} > 2.0 * radius) return std::nullopt;
+  return start + (kRingLift * radius - double{hit.distance}) * ring.normal;
+}
 
 void draw_ring(MarksPainter& painter, const PlaceRing& ring, std::size_t view, const PreviewRays& rays,
                const RayScene& scene) {
@@ -247,8 +256,9 @@ void draw_ring(MarksPainter& painter, const PlaceRing& ring, std::size_t view, c
   for (int k = 0; k < kRingDots; ++k) {
     const portable::SineCosine turn = portable::sine_and_cosine(2.0 * std::numbers::pi * k / kRingDots);
     const Vec3d outwards = turn.cosine * along.first + turn.sine * along.second;
-    const Vec3d place = ring.center + ring.radius * (outwards + kRingLift * ring.normal);
-    if (const auto at = rays.seen_at(view, scene.to_unit(place), scene))
+    const std::optional<Vec3d> place = draped(ring, outwards, scene);
+    if (!place) continue;
+    if (const auto at = rays.seen_at(view, *place, scene))
       painter.ring_dot(at->first, at->second, ring.shade);
   }
 }

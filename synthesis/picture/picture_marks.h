@@ -36,7 +36,7 @@ struct PlaceLabel {
   std::string text;
 };
 
-// A circle in space, drawn where the views see the surface near it.
+// A circle, laid on the ground along its normal, and drawn where the views see that.
 struct PlaceRing {
   Vec3d center, normal;  // in lengths of the mesh; the normal has unit length and looks outwards
   double radius = 0.0;
