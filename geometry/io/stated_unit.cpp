@@ -59,13 +59,14 @@ bool is_length_unit(std::string_view unit) {
   return unit.find(' ') == unit.npos && !unit.empty() && unit != "deg" && unit != "rad";
 }
 
-// The unit of lengths that words such as "Units: meters", "unit = km" or "all lengths in km" state.
+// The unit of lengths that words such as "Units: meters", "length_unit m", "km units" or "all lengths in km"
+// state.
 std::string unit_in_words(std::string_view comment) {
   const std::string lower = lower_case(comment);
   for (const std::string_view mark :
        {"unit:", "units:", "unit =", "units =", "unit=", "units=", "unit is ", "units are ",
         "coordinates in ", "vertices in ", "lengths in ", "distances in ", "coordinates are in ",
-        "vertices are in ", "lengths are in ", "units of "}) {
+        "vertices are in ", "lengths are in ", "units of ", "unit ", "units "}) {
     const std::size_t at = lower.find(mark);
     if (at == lower.npos || (at > 0 && is_letter(lower[at - 1]))) continue;
     std::string_view rest = std::string_view(lower).substr(at + mark.size());
@@ -76,9 +77,19 @@ std::string unit_in_words(std::string_view comment) {
     if (word == "in" && behind.size() > 1 && behind[0] == ' ' && is_letter(behind[1])) continue;
     if (std::string unit = short_unit(word); is_length_unit(unit)) return unit;
     if (word == "si") return "m";
-    if (!mark.starts_with("unit") || mark == "units of ") continue;
+    // "unit normals" are no lengths.
+    if (!mark.starts_with("unit") || mark == "units of " || mark == "unit " || mark == "units ") continue;
     if (std::string unit = unknown_unit(std::string_view(lower).substr(0, at), first_letters(rest));
         !unit.empty())
+      return unit;
+  }
+  // "coordinates: km units"
+  for (std::size_t at = lower.find(" unit"); at != lower.npos; at = lower.find(" unit", at + 1)) {
+    const std::size_t begin = lower.find_last_not_of("abcdefghijklmnopqrstuvwxyz", at == 0 ? 0 : at - 1);
+    const std::size_t first = begin == lower.npos ? 0 : begin + 1;
+    if (begin != lower.npos && (lower[begin] == '/' || lower[begin] == '^')) continue;
+    if (std::string unit = short_unit(std::string_view(lower).substr(first, at - first));
+        is_length_unit(unit))
       return unit;
   }
   return {};

@@ -181,6 +181,14 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
                                    {"# Units: parsecs\n", "parsecs"},
                                    {"# Units: SI\n", "m"},
                                    {"\xef\xbb\xbf# Units: meters\r", "m"},
+                                   {"ply\ncomment unit m\n", "m"},
+                                   {"ply\ncomment units metres\n", "m"},
+                                   {"ply\ncomment length_unit m\n", "m"},
+                                   {"# LENGTH UNIT KM\n", "km"},
+                                   {"# coordinates, km units\n", "km"},
+                                   {"# unit normals follow\n", ""},
+                                   {"# units of force: m/s units\n", ""},
+                                   {"# one unit mesh\n", ""},
                                    {"# columns: x, y, z (m)\n", "m"},
                                    {"# x, y, z (m)\n", "m"}})
     EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
