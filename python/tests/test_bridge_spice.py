@@ -119,6 +119,19 @@ def test_the_frame_turns_and_the_radii_are_half_the_box(site, tmp_path):
     assert spice.dskobj(kernels.dsk)[0] == BODY
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_both_bodies_of_a_pair_keep_their_spins(site, tmp_path, first):
+    body, _ = site
+    pair = [("Didymos", 920065803, 2.26), ("Dimorphos", 120065803, 11.4)]
+    for name, code, period in (pair[first], pair[1 - first]):
+        kernels = bridges.write_kernels(body, tmp_path, name, body=code, period=period)
+        spice.furnsh([kernels.pck, kernels.fk])
+    for name, code, period in pair:
+        turn = np.array(spice.pxform("J2000", f"{name.upper()}_FIXED", period * 900.0))  # a quarter of a turn
+        at_start = np.array(spice.pxform("J2000", f"{name.upper()}_FIXED", 0.0))
+        np.testing.assert_allclose((turn @ at_start.T), [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], atol=1e-9)
+
+
 def test_wrong_kernels_leave_no_file(site, tmp_path):
     body, _ = site
     for name, call in (

@@ -195,6 +195,7 @@ def write_kernels(
     meridian: float = 0.0,
     surfaces: Optional[Sequence[int]] = None,
     unit: Optional[str] = None,
+    frame_id: Optional[int] = None,
 ) -> Kernels:
     """Write NAME.bds, NAME.tpc and NAME.tf: shape, size with rotation, and the frame NAME_FIXED.
 
@@ -214,6 +215,8 @@ def write_kernels(
         Right ascension and declination of +z at J2000, degrees.
     meridian
         The angle of the prime meridian at J2000, degrees.
+    frame_id
+        The number of the frame, 1,400,000 to 2,000,000, as NAIF leaves it to users; None: one by the number of the body.
 
     Returns
     -------
@@ -240,7 +243,11 @@ def write_kernels(
     first_name, first_mesh = _segments(meshes)[0]
     vertices, _ = _plates(first_mesh, unit, first_name)
     radii = (vertices.max(axis=0) - vertices.min(axis=0)) / 2
-    frame, frame_id = f"{name.upper()}_FIXED", 1_400_000 + abs(code) % 500_000
+    frame = f"{name.upper()}_FIXED"
+    if frame_id is None:
+        # A prime: the bodies of a pair, as 920065803 and 120065803, differ by a multiple of many round numbers.
+        frame_id = 1_400_000 + abs(code) % 599_999
+    frame_id = _arrays.integer(frame_id, "frame_id", 1_400_000, 2_000_000)
     paths = [os.path.join(folder, name + extension) for extension in (".bds", ".tpc", ".tf")]
     files = Kernels(*paths)
     _write_text(
