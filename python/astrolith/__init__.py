@@ -39,6 +39,7 @@ from astrolith.synthesis import (
     describe,
     describe_surface,
     draw,
+    expose,
     find_craters,
     gravity,
     height_map,
@@ -109,6 +110,7 @@ __all__ = [
     "texture",
     "train_classifier",
     "draw",
+    "expose",
     "vary",
     "write_mesh",
 ]

@@ -12,6 +12,7 @@ from astrolith._gravity import Gravity, gravity
 from astrolith._height_map import HeightMap, height_map
 from astrolith._mesh import Mesh, mesh_formats, read_mesh, write_mesh
 from astrolith._meshing import mesh, predict
+from astrolith._optics import expose
 from astrolith._picture import render
 from astrolith._recipe import Recipe, library
 from astrolith._scene import Camera, Image, Ranges, Scene
@@ -38,6 +39,7 @@ __all__ = [
     "compare",
     "describe",
     "describe_surface",
+    "expose",
     "find_craters",
     "gravity",
     "height_map",

@@ -175,3 +175,28 @@ def test_what_cannot_be_is_refused(ball, words, call):
     with pytest.raises(ValueError, match=words) as refusal:
         call(ball)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_detector_spreads_counts_and_adds_noise():
+    radiance = np.zeros((40, 60))
+    radiance[20, 30] = 0.5
+    sharp = astrolith.expose(radiance, bits=8)
+    assert sharp.dtype == np.uint16 and sharp[20, 30] == 128 and sharp.sum() == 128
+    wide = astrolith.expose(100 * radiance, spread=2.0, white=100.0, bits=16).astype(float)
+    assert abs(wide.sum() - 32768) < 40  # the light is spread, not lost
+    away = np.hypot(*(np.indices(wide.shape) - np.array([20, 30])[:, None, None]))
+    assert np.sqrt((wide * away**2).sum() / wide.sum() / 2) == pytest.approx(2.0, rel=0.02)
+    flat = np.full((200, 200), 0.25)
+    noisy = astrolith.expose(flat, shot_noise=True, read_noise=20.0, full_well=40000.0, bits=16, seed=3)
+    electrons = noisy / 65535 * 40000
+    assert electrons.mean() == pytest.approx(10000, rel=1e-3)
+    assert electrons.std() == pytest.approx(np.sqrt(10000 + 400), rel=0.02)
+    assert (noisy == astrolith.expose(flat, shot_noise=True, read_noise=20.0, full_well=40000.0, bits=16, seed=3)).all()
+    assert astrolith.expose([[7.0]], bits=10)[0, 0] == 1023
+    for name, call in (
+        ("radiance", lambda: astrolith.expose([[-1.0]])),
+        ("bits", lambda: astrolith.expose(flat, bits=17)),
+        ("spread", lambda: astrolith.expose(flat, spread=-1.0)),
+    ):
+        with pytest.raises(ValueError, match=name):
+            call()
