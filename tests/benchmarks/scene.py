@@ -32,11 +32,13 @@ def speeds(mesh):
     scene = astrolith.Scene(mesh)
     print(f"{len(mesh.faces)} triangles; the scene is made in {time.perf_counter() - start:.2f} s")
     radius = np.linalg.norm(mesh.vertices, axis=1).max()
-    camera = astrolith.Camera(1024, 1024, 2000.0).look_at((0, -4.2 * radius, 0.5 * radius), (0, 0, 0))
-    image = scene.image(camera, (1.0, -0.6, 0.3))
-    shadow = ((image.radiance == 0) & (image.incidence < 90)).sum() / (image.body >= 0).sum()
-    clock, processor = best(lambda: scene.image(camera, (1.0, -0.6, 0.3)))
-    print(f"image 1024 x 1024: {clock:.3f} s, {processor:.3f} processor seconds; {(image.body >= 0).mean():.0%} covered, {shadow:.0%} of it in cast shadow")
+    for distance in (2.2, 4.2):
+        camera = astrolith.Camera(1024, 1024, 2000.0).look_at((0, -distance * radius, 0.1 * distance * radius), (0, 0, 0))
+        image = scene.image(camera, (1.0, -0.6, 0.3))
+        shadow = ((image.radiance == 0) & (image.incidence < 90)).sum() / (image.body >= 0).sum()
+        clock, processor = best(lambda: scene.image(camera, (1.0, -0.6, 0.3)))
+        print(f"image 1024 x 1024 from {distance} radii: {clock:.3f} s, {processor:.3f} processor seconds; "
+              f"{(image.body >= 0).mean():.0%} covered, {shadow:.0%} of it in cast shadow")  # fmt: skip
     row, column = np.nonzero(image.body >= 0)
     seen = np.stack([(column - 511.5) / 2000, (row - 511.5) / 2000, np.ones(len(row))], axis=1) @ camera.rotation
     rng = np.random.default_rng(1)
