@@ -122,7 +122,7 @@ SurfaceColors::SurfaceColors(const Recipe& recipe, const std::string& name, cons
     if (!layer.albedo) continue;
     paints_.craters.push_back(make_tone(layer, placed.craters));
     paints_.craters.back().layer =
-        static_cast<std::uint32_t>(std::ranges::find(places, placed.layer) - places.begin());
+        static_cast<std::uint32_t>(std::find(places.begin(), places.end(), placed.layer) - places.begin());
   }
   for (const LayerBoulders& placed : field.boulders()) {
     const auto& layer = std::get<BoulderLayer>(recipe.layers[static_cast<std::size_t>(placed.layer)]);
