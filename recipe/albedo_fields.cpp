@@ -56,14 +56,10 @@ void visit_fields(FieldVisitor& v, BoulderAlbedo& albedo) {
 void check_albedos(const Recipe& recipe, const Place& place) {
   const Place layers = place.field("layers");
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    const Layer& layer = recipe.layers[i];
-    if (!has_albedo(layer)) continue;
-    const Place its_layer = layers.element(i), at = its_layer.field("albedo");
-    if (recipe.body && !recipe.albedo)
-      at.fail("changes that of the ground, which the recipe does not state; add `albedo` to the recipe");
-    const LayerAlbedo* const noise = noise_albedo(layer);
-    if (noise != nullptr && noise->contrast != 0.0 && !has_height(layer))
-      at.field("contrast").fail("needs heights, and the layer has none; give it some, or leave it out");
+    const LayerAlbedo* const albedo = noise_albedo(recipe.layers[i]);
+    if (albedo == nullptr || albedo->contrast == 0.0 || has_height(recipe.layers[i])) continue;
+    const Place layer = layers.element(i), at = layer.field("albedo");
+    at.field("contrast").fail("needs heights, and the layer has none; give it some, or leave it out");
   }
 }
 

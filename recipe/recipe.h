@@ -191,7 +191,7 @@ struct Recipe {
   std::optional<MetaballBody> body;          // fit_gabor writes recipes without a body
   std::optional<BodyPopulation> population;  // only in a recipe without a body
   std::vector<Layer> layers;                 // at least one in a recipe without a body and a population
-  std::optional<GroundAlbedo> albedo;        // absent: the body has no colour but what layers paint
+  std::optional<GroundAlbedo> albedo;        // absent: the default, if a layer has one
   std::optional<Erosion> erosion;            // only in a recipe with a body
   std::optional<Family> family;  // what differs between members; the recipe itself stands for none
 };

@@ -93,12 +93,18 @@ double find_stated_height(const Layer& layer) {
 
 double viewing_light(double normal_albedo) { return 0.36 * portable::pow(normal_albedo / 0.1, 1.0 / 3.0); }
 
+std::optional<GroundAlbedo> stated_albedo(const Recipe& recipe) {
+  if (recipe.albedo) return recipe.albedo;
+  const bool in_layers = std::any_of(recipe.layers.begin(), recipe.layers.end(), has_albedo);
+  return in_layers ? std::optional(GroundAlbedo{}) : std::nullopt;
+}
+
 bool has_colors(const Recipe& recipe) {
-  return recipe.albedo || std::any_of(recipe.layers.begin(), recipe.layers.end(), paints);
+  return stated_albedo(recipe) || std::any_of(recipe.layers.begin(), recipe.layers.end(), paints);
 }
 
 SurfaceColors::SurfaceColors(const Recipe& recipe, const std::string& name, const ImplicitField& field)
-    : field_(field), albedo_(recipe.albedo) {
+    : field_(field), albedo_(stated_albedo(recipe)) {
   constexpr float kBare = static_cast<float>(kBareColor[0]) / 255.0f;
   const double scale = albedo_ ? viewing_light(albedo_->normal) / albedo_->normal : 0.0;
   bare_ = albedo_ ? encoded(scale * albedo_->normal * albedo_->color) : Vec3f{kBare, kBare, kBare};

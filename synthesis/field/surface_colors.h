@@ -13,6 +13,9 @@
 
 namespace astrolith {
 
+// The albedo of the recipe's ground: the default where layers alone state one; none where nothing does.
+std::optional<GroundAlbedo> stated_albedo(const Recipe& recipe);
+
 // Whether the recipe states an albedo, or a layer of it paints its body.
 bool has_colors(const Recipe& recipe);
 

@@ -93,9 +93,6 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   for (const Layer& layer : details.layers) {
     result.layers.push_back(rescaled(details.body ? drawn_from(*details.body, layer) : layer, ratio));
   }
-  if (!result.albedo && std::any_of(result.layers.begin(), result.layers.end(), has_albedo))
-    throw InputError(base_name + ": albedo: absent, and a layer of " + details_name +
-                     " changes that of the ground; state it in one of both");
   return result;
 }
 

@@ -95,8 +95,6 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("lobes")", R"("LOBES")", R"(layers[1].LOBES: unknown field; known are)"},
       {R"("height_rms")", R"("height\nrms")", R"(layers[1].height\nrms: unknown field; did you mean)"},
       // Missing fields.
-      {R"("albedo": {"normal": 0.05, "color": [1.25, 1, 0.75], "steep": 1.5, "elevation": {"from": 0, "to": -0.1, "factor": 0.8}},)",
-       R"()", R"(layers[0].albedo: changes that of the ground, which the recipe does not state)", false},
       {R"(, "width": 0.125)", R"()", R"(layers[3].locality.width: is missing)"},
       {R"("format_version": 1,)", R"()", R"(format_version: is missing)"},
       {R"(, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"()",

@@ -248,6 +248,17 @@ TEST(SurfaceAlbedo, FreshCratersAreBright) {
   EXPECT_NEAR(albedo[4].y, 0.046, 1e-6);
 }
 
+TEST(SurfaceAlbedo, OfALayerAloneStandsOnTheDefault) {
+  Recipe recipe = sphere_recipe(1.0);
+  CraterLayer craters;
+  craters.albedo = CraterAlbedo{2.0};
+  craters.craters = {{{{0, 0, 1}}, 0.2, {}, {}, 0.0}};
+  recipe.layers = {craters};
+  EXPECT_TRUE(has_colors(recipe));
+  EXPECT_NEAR(green_at(recipe, {0, 0, -1}), 0.1, 1e-6);
+  EXPECT_NEAR(green_at(recipe, {0, 0, 1}), 0.2, 1e-6);
+}
+
 // As many boulders as a law of their albedo needs, looked at where each is highest.
 TEST(SurfaceAlbedo, BouldersFollowTheirLaw) {
   Recipe recipe = dark_sphere();
