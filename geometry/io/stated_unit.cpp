@@ -73,7 +73,7 @@ std::string unit_in_words(std::string_view comment) {
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t(['\""), rest.size()));
     // Not "m/s", and not "in development".
     const std::string_view word = first_letters(rest), behind = rest.substr(word.size());
-    if (behind.find_first_of("/^*") == 0) continue;
+    if (behind.find_first_of("/^*-0123456789") == 0) continue;
     if (word == "in" && behind.size() > 1 && behind[0] == ' ' && is_letter(behind[1])) continue;
     if (std::string unit = short_unit(word); is_length_unit(unit)) return unit;
     if (word == "si") return "m";
@@ -88,9 +88,9 @@ std::string unit_in_words(std::string_view comment) {
     const std::size_t begin = lower.find_last_not_of("abcdefghijklmnopqrstuvwxyz", at == 0 ? 0 : at - 1);
     const std::size_t first = begin == lower.npos ? 0 : begin + 1;
     if (begin != lower.npos && (lower[begin] == '/' || lower[begin] == '^')) continue;
-    if (std::string unit = short_unit(std::string_view(lower).substr(first, at - first));
-        is_length_unit(unit))
-      return unit;
+    const std::string_view word = std::string_view(lower).substr(first, at - first);
+    if (word == "in") continue;  // "in units of the radius"
+    if (std::string unit = short_unit(word); is_length_unit(unit)) return unit;
   }
   return {};
 }

@@ -69,7 +69,10 @@ def expose(
     ValueError
         An argument is wrong.
     """
-    image = np.asarray(radiance, dtype=np.float64)
+    try:
+        image = np.asarray(radiance).astype(np.float64, casting="same_kind")
+    except (TypeError, ValueError):
+        raise ValueError("radiance: must be (h, w) numbers from 0 up; give the radiance of a picture") from None
     if image.ndim != 2 or image.size == 0 or not np.isfinite(image).all() or (image < 0).any():
         raise ValueError("radiance: must be (h, w) numbers from 0 up; give the radiance of a picture")
     white = _arrays.number(white, "white", 1e-9, 1e9)
@@ -79,7 +82,7 @@ def expose(
     largest = 2 ** _arrays.integer(bits, "bits", 1, 16) - 1
     random = np.random.default_rng(_arrays.integer(seed, "seed", 0, 2**63 - 1))
     electrons = np.minimum(_spread(image, spread) / white, 1.0) * full_well
-    if shot_noise:
+    if _arrays.flag(shot_noise, "shot_noise"):
         electrons = np.minimum(random.poisson(electrons), full_well).astype(np.float64)
     if read_noise > 0.0:
         electrons = electrons + random.normal(0.0, read_noise, image.shape)

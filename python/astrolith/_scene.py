@@ -44,7 +44,10 @@ def _matrix(rotation: RotationLike, name: str) -> npt.NDArray[np.float64]:
 
 def _normal_albedo(mesh: Mesh, recipe: RecipeLike) -> Optional[npt.NDArray[np.float64]]:
     """The normal albedo of a recipe's vertices, from the colours that show it for viewing (docs/recipe.md)."""
-    stated = mesh.figures.get("albedo") or records(json_of(recipe, "bodies")[0]).get("albedo")
+    document = records(json_of(recipe, "bodies")[0])
+    stated = mesh.figures.get("albedo") or document.get("albedo")
+    if not stated and any("albedo" in layer for layer in document.get("layers", [])):
+        stated = {"normal": 0.1}  # of a ground that layers alone speak of
     if not stated or mesh.colors is None:
         return None
     shown = 0.36 * (stated["normal"] / 0.1) ** (1 / 3)
@@ -391,6 +394,8 @@ class Scene:
         places = np.asarray(origins)
         if places.ndim == 1:
             places = np.array([_arrays.vector(origins, "origins")])
+        elif places.dtype.kind in "iu":
+            places = places.astype(np.float64)
         return Ranges(
             **self._scene.ranges(
                 _arrays.rows(places, "origins", empty=True),

@@ -105,6 +105,7 @@ void paint_boulders(const FieldModel& model, std::span<const BoulderTone> tones,
                     const LocalPoints* local, const Batch& b, PaintedPoint* points) {
   std::array<float, kBatch> highest;
   const auto n = static_cast<std::size_t>(b.n);
+  const std::vector<PaintedPoint> ground(points, points + n);
   for (std::size_t i = 0; i < n; ++i) highest[i] = b.distance[i] + b.elevation[i];
   for (const std::uint32_t k : boulders_around(model, b.n, at)) {
     const bool in_patch = local != nullptr && k < model.patch_boulders.size() && model.patch_boulders[k];
@@ -116,6 +117,7 @@ void paint_boulders(const FieldModel& model, std::span<const BoulderTone> tones,
       const float distance = boulder_distance(kernel, u);
       if (!(distance > highest[i])) continue;
       highest[i] = distance;
+      points[i] = ground[i];
       points[i].on_boulder = tones[k].covers;
       if (!tones[k].covers) continue;
       points[i].color = tones[k].color;

@@ -51,7 +51,8 @@ NoiseTone make_tone(const LayerAlbedo& albedo, double height, double light_of_al
   NoiseTone tone;
   tone.covers = albedo.normal.has_value();
   if (tone.covers) tone.color = encoded(light_of_albedo * *albedo.normal * albedo.color);
-  if (albedo.contrast != 0.0 && height != 0.0) tone.per_height = static_cast<float>(albedo.contrast / height);
+  if (albedo.contrast != 0.0 && std::fabs(height) > 1e-20)
+    tone.per_height = static_cast<float>(albedo.contrast / height);
   return tone;
 }
 
@@ -153,7 +154,7 @@ Vec3f SurfaceColors::light_at(const PaintedPoint& point, const Vec3f& normal) co
     const auto from = static_cast<float>(by->from);
     gain(by->factor, smooth_step(point.elevation, from, 1.0f / (static_cast<float>(by->to) - from)));
   }
-  const auto exponential = [](double x) { return portable::exp(x); };
+  const auto exponential = [](double x) { return portable::exp(std::clamp(x, -20.0, 20.0)); };
   const Vec3f linear = each_channel(srgb_to_linear, point.color), by = each_channel(exponential, tone);
   return {linear.x * by.x, linear.y * by.y, linear.z * by.z};
 }

@@ -114,9 +114,11 @@ KnownAlbedo drawn_albedo(std::uint64_t seed) {
 void set_albedo(Recipe& recipe, const KnownAlbedo& known) {
   recipe.albedo = known.ground;
   if (!recipe.layers.empty() && is_mottles(recipe.layers.back())) recipe.layers.pop_back();
+  // Other layers keep their places, and with them their random numbers.
   for (Layer& layer : recipe.layers) {
     if (CraterLayer* craters = std::get_if<CraterLayer>(&layer)) craters->albedo = known.craters;
     if (BoulderLayer* boulders = std::get_if<BoulderLayer>(&layer)) boulders->albedo = known.boulders;
+    if (LayerUse* use = find_use(layer)) use->albedo.reset();
   }
   if (known.mottling > 0.0) recipe.layers.push_back(mottles(size_of_body(*recipe.body), known.mottling));
 }

@@ -132,13 +132,19 @@ bool has_own_colors(const std::filesystem::path& shape) {
                              [&](const char* name) { return std::ranges::find(names, name) != names.end(); });
 }
 
-// The colours that a .ply has, from 0 to 255.
+// The colours that a .ply has.
 void show_own_colors(const Arguments& a, PreviewOptions& options) {
   std::array<std::vector<double>, 3> channels;
-  for (std::size_t k = 0; k < 3; ++k) channels[k] = read_ply_values(a.shape, kChannels[k]).values;
+  double greatest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    channels[k] = read_ply_values(a.shape, kChannels[k]).values;
+    for (const double value : channels[k]) greatest = std::max(greatest, value);
+  }
+  // Bytes, numbers of 16 bits or shares, as writers have them.
+  const double full = greatest <= 1.0 ? 1.0 : greatest <= 255.0 ? 255.0 : 65535.0;
   for (std::size_t i = 0; i < channels[0].size(); ++i) {
     const auto linear = [&](std::size_t k) {
-      return static_cast<float>(srgb_to_linear(std::clamp(channels[k][i] / 255.0, 0.0, 1.0)));
+      return static_cast<float>(srgb_to_linear(std::clamp(channels[k][i] / full, 0.0, 1.0)));
     };
     options.vertex_colors.push_back({linear(0), linear(1), linear(2)});
   }
@@ -158,7 +164,6 @@ void write_radiance(Job& job, const Arguments& a, const TriangleMesh& mesh, Prev
   const auto albedo = static_cast<float>(is_radiance_factor(options.reflectance) ? 1.0 : a.normal_albedo);
   options.vertex_colors.assign(mesh.vertices.size(), {albedo, albedo, albedo});
   options.keep_radiance = true;
-  options.marks = {};
   const RenderedPicture picture = render_picture(mesh, options, job.progress("radiance"));
   write_tiff_float(picture.radiance, options.width, options.height, a.radiance, 3);
 }

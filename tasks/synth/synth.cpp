@@ -254,7 +254,10 @@ void check_outputs(const Job& job, const SynthOptions& options) {
   }
   if (!options.sheet.empty()) {
     require_extension(options.sheet, {".png"});
-    if (single) require_writable(options.sheet);
+    if (options.mesh.sinks.file.empty() || options.mesh.sinks.bake == 0)
+      throw InputError("--sheet: shows the maps of --bake beside a mesh; add -o FILE.glb");
+    if (!single && options.sheet.has_parent_path()) make_output_folder(options.sheet.parent_path());
+    require_writable(options.sheet);
     check_sheet(options.members, options.sheet);
   }
   check_finish(options.finish);
@@ -324,9 +327,10 @@ void synthesize(Job& job, const SynthOptions& options) {
     return finished(part, options.finish, varied(part, options, of, seed), file.string(), patch_side);
   };
   const bool is_varied = options.vary > 0.0;
-  const Recipe whole = is_varied || recipe.population
-                           ? recipe
-                           : finished(job, options.finish, recipe, file.string(), patch_side);
+  FinishOptions of_whole = options.finish;
+  if (has_members) of_whole.albedo = {};  // each member gets its own
+  const Recipe whole =
+      is_varied || recipe.population ? recipe : finished(job, of_whole, recipe, file.string(), patch_side);
   if (has_members) {
     check_member_options(job, recipe);
     const auto draw = [&](Job& part, std::uint64_t number) {
@@ -337,7 +341,11 @@ void synthesize(Job& job, const SynthOptions& options) {
                                   : finished(part, options.finish, member.recipe, file.string(), patch_side);
         return member;
       }
-      if (!is_varied) return family_member(whole, number);
+      if (!is_varied) {
+        FamilyMember member = family_member(whole, number);
+        options.finish.albedo.apply(part, member.recipe);
+        return member;
+      }
       if (!recipe.family) return FamilyMember{variation(part, recipe, number), {}, {}, {}, {}};
       FamilyMember member = family_member(recipe, number);
       member.recipe = variation(part, member.recipe, number);

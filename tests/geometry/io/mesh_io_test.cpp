@@ -189,6 +189,9 @@ TEST(StatedUnit, InCommentsOfOtherPrograms) {
                                    {"# unit normals follow\n", ""},
                                    {"# units of force: m/s units\n", ""},
                                    {"# one unit mesh\n", ""},
+                                   {"# coordinates in units of the mean radius\n", ""},
+                                   {"# Unit M-type body\n", ""},
+                                   {"# facet area unit m2\n", ""},
                                    {"# columns: x, y, z (m)\n", "m"},
                                    {"# x, y, z (m)\n", "m"}})
     EXPECT_EQ(stated_length_unit(folder.write("a.obj", text)), unit) << text;
