@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "synthesis/field/surface_paints.h"
 #include "synthesis/field/field_model_internal.h"
+#include "synthesis/field/surface_paints.h"
 
 namespace astrolith {
 
