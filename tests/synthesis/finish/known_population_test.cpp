@@ -124,7 +124,8 @@ TEST(KnownPopulation, PatchesHaveTheirBoulders) {
   EXPECT_NEAR(inside, expected, 4.0 * std::sqrt(expected) + 0.03 * expected);
 }
 
-// Wright et al. 2016: a quarter dark, with means of Rayleigh's distributions, sqrt(pi / 2) times .030 and .168.
+// Wright et al. 2016: a quarter dark, with means of Rayleigh's distributions, sqrt(pi / 2) times .030 and
+// .168.
 TEST(KnownAlbedo, DrawsAlbedosOfNearEarthAsteroids) {
   double dark = 0.0, sum = 0.0;
   constexpr int kDraws = 4000;
