@@ -63,7 +63,7 @@ void print_row(const NamedSpectrum& known, int realisations) {
   std::vector<PowerSpectrum> periodograms;
   const double share = 1.0 / realisations;
   for (int seed = 1; seed <= realisations; ++seed) {
-    const GreyImage image = realisation_of(known.spectrum, static_cast<std::uint64_t>(seed));
+    const GreyImage image = draw_realisation(known.spectrum, static_cast<std::uint64_t>(seed));
     periodograms.push_back(power_spectrum(image));
     raw += share * optimal_transport_distance(periodograms.back(), known.spectrum);
     const GaborFit fit = fit_gabor_lobes(image, known.name, {});
