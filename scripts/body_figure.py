@@ -27,12 +27,12 @@ def shot(body, view, triangles=1e6, size=(620, 420), sun=(-0.8, 0.45, 0.4)):
 
 def zoom(recipe, place, finish, size=(620, 620)):
     """The body, and squares of its ground about a place: each a fifth as long, with what the finish draws down to 1/100 of it."""
-    whole = astrolith.mesh(recipe, triangles=1e6, albedo=finish)
+    whole = astrolith.mesh(recipe, triangles=1e6)
     normal = whole.normals[((whole.vertices - place) ** 2).sum(1).argmin()]
     view = normal + 0.6 * np.cross(normal, (0, 0, 1))
     shots, side = [shot(whole, view, size=size)], np.ptp(whole.vertices, 0).max() / 6
     for _ in range(3):
-        ground = astrolith.mesh(recipe, patch=(*place, side), aligned=True, resolution=320, finish=finish, to=side / 100, albedo=finish)
+        ground = astrolith.mesh(recipe, patch=(*place, side), aligned=True, resolution=320, finish=finish, to=side / 100)
         wide = shot(ground, view, size=(2 * size[0], 2 * size[1]), sun=(-0.6, 0.5, 0.9))
         shots.append(wide[size[1]:-size[1], size[0]:-size[0]])
         side /= 5

@@ -159,11 +159,11 @@ Vec3f SurfaceColors::light_at(const PaintedPoint& point, const Vec3f& normal) co
   return {linear.x * by.x, linear.y * by.y, linear.z * by.z};
 }
 
-template <class Vertex, class Use>
-void SurfaceColors::for_each_light(const Vec3d& origin, std::size_t count, const Vertex& vertex,
+template <class Use>
+void SurfaceColors::for_each_point(const Vec3d& origin, std::span<const MeshVertex> vertices,
                                    const Use& use) const {
-  const auto local = [&](std::size_t i) { return vertex(i).position; };
-  for_each_chunk(field_, origin, count, local, [&](const PointChunk& chunk) {
+  const auto local = [&](std::size_t i) { return vertices[i].position; };
+  for_each_chunk(field_, origin, vertices.size(), local, [&](const PointChunk& chunk) {
     std::array<PaintedPoint, PointChunk::kMost> points;
     points.fill({bare_, {}, {}});
     chunk.block.paint(paints_, chunk.origin, chunk.along(0), chunk.along(1), chunk.along(2),
@@ -175,16 +175,14 @@ void SurfaceColors::for_each_light(const Vec3d& origin, std::size_t count, const
 void SurfaceColors::find_albedo(const Vec3d& origin, std::span<const MeshVertex> vertices,
                                 std::span<Vec3f> albedo) const {
   const auto scale = static_cast<float>(albedo_->normal / viewing_light(albedo_->normal));
-  const auto vertex = [&](std::size_t i) { return vertices[i]; };
-  for_each_light(origin, vertices.size(), vertex, [&](std::size_t i, const PaintedPoint& point) {
+  for_each_point(origin, vertices, [&](std::size_t i, const PaintedPoint& point) {
     albedo[i] = scale * light_at(point, vertices[i].normal);
   });
 }
 
 void SurfaceColors::paint(const Vec3d& origin, std::span<const MeshVertex> vertices,
                           std::span<VertexColor> colors) const {
-  const auto vertex = [&](std::size_t i) { return vertices[i]; };
-  for_each_light(origin, vertices.size(), vertex, [&](std::size_t i, const PaintedPoint& point) {
+  for_each_point(origin, vertices, [&](std::size_t i, const PaintedPoint& point) {
     colors[i] = color_bytes(albedo_ ? each_channel(linear_to_srgb, light_at(point, vertices[i].normal))
                                     : point.color);
   });

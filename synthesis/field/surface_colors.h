@@ -55,9 +55,10 @@ class SurfaceColors {
   VertexColor for_viewing(const Vec3f& albedo) const;
 
  private:
-  // Calls use(i, light) with the linear light for viewing of the points origin + vertex(i).
-  template <class Vertex, class Use>
-  void for_each_light(const Vec3d& origin, std::size_t count, const Vertex& vertex, const Use& use) const;
+  // Calls use(i, point) with what is painted at the points origin + vertices[i].position.
+  template <class Use>
+  void for_each_point(const Vec3d& origin, std::span<const MeshVertex> vertices, const Use& use) const;
+  // The linear light for viewing at a point with this normal.
   Vec3f light_at(const PaintedPoint& point, const Vec3f& normal) const;
 
   const ImplicitField& field_;

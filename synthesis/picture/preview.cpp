@@ -338,6 +338,14 @@ void require_cameras_outside(const TriangleMesh& mesh, const PreviewOptions& opt
   PreviewRays(mesh, options, scene).require_outside(scene);
 }
 
+std::vector<Vec3f> linear_colors(const TriangleMesh& mesh) {
+  const auto linear = [](std::uint8_t byte) { return static_cast<float>(srgb_to_linear(byte / 255.0)); };
+  std::vector<Vec3f> colors;
+  colors.reserve(mesh.colors.size());
+  for (const VertexColor& c : mesh.colors) colors.push_back({linear(c[0]), linear(c[1]), linear(c[2])});
+  return colors;
+}
+
 RenderedPicture render_picture(const TriangleMesh& mesh, const PreviewOptions& options,
                                const Progress& progress) {
   check_preview_options(options, mesh);

@@ -71,6 +71,9 @@ struct RenderedPicture {
   std::vector<std::size_t> empty_views;  // those whose pixels, seen in their middles, all miss the mesh
 };
 
+// The linear light of the mesh's own colours, for PreviewOptions::vertex_colors; empty where it has none.
+std::vector<Vec3<float>> linear_colors(const TriangleMesh& mesh);
+
 // Shading is smooth: it uses mesh.normals where given, and otherwise normals averaged over triangles. Throws
 // InputError for a mesh without triangles, with indices out of range or with positions that are not finite,
 // for options out of range and for a camera inside the mesh. Throws WorkError when progress asks to stop.

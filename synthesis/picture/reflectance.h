@@ -26,7 +26,7 @@ struct Reflectance {
   double g = -0.3;            // of Henyey and Greenstein, -.95 .. .95; below 0 rock scatters backwards
   double b0 = 0.8, h = 0.05;  // height 0 .. 10 and width .0001 .. 2 of the opposition surge
   double theta = 20.0;        // mean slope below what is meshed, degrees, 0 .. 60
-  // Of ROLO, with its albedo: the normal albedo is (C0 + A0) / 2.
+  // The phase curve of ROLO holds the albedo: the normal albedo is (C0 + A0) / 2.
   double c0 = 0.0, c1 = 0.1;
   double a0 = 0.1, a1 = 0.0, a2 = 0.0, a3 = 0.0, a4 = 0.0;
 };

@@ -107,6 +107,9 @@ void check(const Job& job, const Arguments& a) {
     require_extension(table, {".csv"});
     require_writable(table);
   }
+  if (job.options.option("--normal-albedo").count() > 0 && a.radiance.empty() && a.phase_curve.empty() &&
+      a.light_curve.empty())
+    throw InputError("--normal-albedo: is of light as a number; add --radiance FILE.tif or a curve");
   a.look.check(job, true, "");
   if (a.range.empty()) return;
   if (!(a.range[0] < a.range[1]) || !std::isfinite(a.range[1] - a.range[0]))

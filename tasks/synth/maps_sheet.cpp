@@ -67,9 +67,7 @@ RgbImage draw_panel(const TriangleMesh& mesh, SurfaceMaps maps) {
   options.width = options.height = kPanel;
   options.views = {standard_views().back()};
   options.maps = std::move(maps);
-  const auto linear = [](std::uint8_t byte) { return static_cast<float>(srgb_to_linear(byte / 255.0)); };
-  for (const VertexColor& c : mesh.colors)
-    options.vertex_colors.push_back({linear(c[0]), linear(c[1]), linear(c[2])});
+  options.vertex_colors = linear_colors(mesh);
   return render_preview(mesh, options);
 }
 

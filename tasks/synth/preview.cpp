@@ -16,7 +16,6 @@
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
-#include "numerics/srgb.h"
 #include "synthesis/field/feature_list.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/surface_labels.h"
@@ -26,11 +25,6 @@
 
 namespace astrolith {
 namespace {
-
-Vec3f linear_color(const VertexColor& color) {
-  const auto linear = [](std::uint8_t byte) { return static_cast<float>(srgb_to_linear(byte / 255.0)); };
-  return {linear(color[0]), linear(color[1]), linear(color[2])};
-}
 
 PixelSize parse_maps_size(const std::string& text) {
   return parse_pixel_size("--maps-size", text, kLeastPictureSide, kMostPictureSide);
@@ -278,7 +272,7 @@ void require_cameras_outside(const Job& job, const PreviewRequest& request, cons
 void write_preview(const Job& job, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit) {
   PreviewOptions options = picture_options(job, request, mesh, unit);
-  for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
+  options.vertex_colors = linear_colors(mesh);
   request.look.write(job, render_picture(mesh, options, job.progress("preview")), request.file);
 }
 

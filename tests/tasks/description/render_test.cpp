@@ -52,7 +52,7 @@ TEST_F(Render, ShowsTheColoursOfThePly) {
 // A tetrahedron seen along +x shows the slanted facet: S is its area times m r.
 TEST_F(Render, WritesRadianceAndCurves) {
   succeed("v.ply -o p.png --picture-size 200x160 --radiance p.tif --normal-albedo .5 --reflectance lambert");
-  EXPECT_EQ(text("p.tif").size() > 200 * 160 * 12, true);
+  EXPECT_GT(text("p.tif").size(), 200u * 160u * 12u);
   const auto summary = figures(
       "v.ply --unit km --phase-curve phase.csv --light-curve light.csv --period 6 --normal-albedo .5 "
       "--reflectance lambert");
@@ -81,6 +81,7 @@ TEST_F(Render, RefusesWhatCannotBeDrawn) {
               {"--radiance r.png", ".tif"},
               {"--phase-curve r.txt", ".csv"},
               {"--normal-albedo 2", "--normal-albedo"},
+              {"--normal-albedo .2", "add --radiance FILE.tif or a curve"},
               {"--period 2", "--period requires --light-curve"},
               {"--picture-size 1000000x1000000", "--picture-size"},
               {"--sun 0 0 0", "--sun"},
