@@ -1,5 +1,6 @@
 #include "estimation/plot/figure.h"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
@@ -68,6 +69,12 @@ std::string printable(std::string text) {
   return text;
 }
 
+void select_font(cairo_t* c, double size, bool bold) {
+  cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(c, size);
+}
+
 void require_success(cairo_status_t status, const std::filesystem::path& file) {
   if (status == CAIRO_STATUS_SUCCESS) return;
   throw WorkError(file.string() + ": the figure could not be drawn (" + cairo_status_to_string(status) + ")");
@@ -110,56 +117,69 @@ void Figure::Free::operator()(cairo_t* context) const { cairo_destroy(context); 
 void Figure::Free::operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
 
 Figure::Figure(double width, double height) : width_(width), height_(height) {
-  const cairo_rectangle_t page{0.0, 0.0, width, height};
-  surface_.reset(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, &page));
-  context_.reset(cairo_create(surface_.get()));
-  cairo_set_source_rgb(context_.get(), 1.0, 1.0, 1.0);
-  cairo_paint(context_.get());
+  // Text is measured as on a page of points, whose glyphs no grid of pixels moves.
+  const std::unique_ptr<cairo_surface_t, Free> points(
+      cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
+  measure_.reset(cairo_create(points.get()));
+  draw([](cairo_t* c) { cairo_paint(c); }, {1.0, 1.0, 1.0});
 }
 
-void Figure::set(const Ink& ink) { cairo_set_source_rgb(context_.get(), ink.red, ink.green, ink.blue); }
+void Figure::draw(std::function<void(cairo_t*)> step, const Ink& ink) {
+  steps_.push_back([ink, step = std::move(step)](cairo_t* c) {
+    cairo_save(c);
+    cairo_set_source_rgb(c, ink.red, ink.green, ink.blue);
+    step(c);
+    cairo_new_path(c);  // text leaves a point behind
+    cairo_restore(c);
+  });
+}
 
 void Figure::line(double x0, double y0, double x1, double y1, double width, const Ink& ink) {
-  set(ink);
-  cairo_set_line_width(context_.get(), width);
-  cairo_move_to(context_.get(), x0, y0);
-  cairo_line_to(context_.get(), x1, y1);
-  cairo_stroke(context_.get());
+  draw(
+      [=](cairo_t* c) {
+        cairo_set_line_width(c, width);
+        cairo_move_to(c, x0, y0);
+        cairo_line_to(c, x1, y1);
+        cairo_stroke(c);
+      },
+      ink);
 }
 
-double Figure::text_width(const std::string& words, double size, bool bold) {
-  cairo_t* c = context_.get();
-  cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
-                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(c, size);
+double Figure::text_width(const std::string& words, double size, bool bold) const {
+  select_font(measure_.get(), size, bold);
   cairo_text_extents_t extents;
-  cairo_text_extents(c, words.c_str(), &extents);
+  cairo_text_extents(measure_.get(), words.c_str(), &extents);
   return extents.x_advance;
 }
 
 void Figure::text(double x, double y, const std::string& words, double size, Align align, bool bold,
                   const Ink& ink) {
-  const std::string text = printable(words);
-  const double width = text_width(text, size, bold);  // also selects the font
-  cairo_t* c = context_.get();
-  const double shift = align == Align::kLeft ? 0.0 : align == Align::kCenter ? 0.5 : 1.0;
-  set(ink);
-  cairo_move_to(c, x - shift * width, y);
-  cairo_show_text(c, text.c_str());
+  text(x, y, 0.0, printable(words), size, align, bold, ink);
 }
 
-void Figure::vertical_text(double x, double y, const std::string& what, double size) {
-  cairo_save(context_.get());
-  cairo_translate(context_.get(), x, y);
-  cairo_rotate(context_.get(), -0.5 * std::numbers::pi);
-  text(0.0, 0.0, what, size, Align::kCenter);
-  cairo_restore(context_.get());
+void Figure::text(double x, double y, double angle, const std::string& words, double size, Align align,
+                  bool bold, const Ink& ink) {
+  const double shift = align == Align::kLeft ? 0.0 : align == Align::kCenter ? 0.5 : 1.0;
+  const double before = shift == 0.0 ? 0.0 : shift * text_width(words, size, bold);
+  draw(
+      [=](cairo_t* c) {
+        select_font(c, size, bold);
+        cairo_translate(c, x, y);
+        cairo_rotate(c, angle);
+        cairo_move_to(c, -before, 0.0);
+        cairo_show_text(c, words.c_str());
+      },
+      ink);
+}
+
+void Figure::vertical_text(double x, double y, const std::string& words, double size) {
+  text(x, y, -0.5 * std::numbers::pi, printable(words), size, Align::kCenter, false, {});
 }
 
 void Figure::picture(const Rectangle& at, int width, int height, std::span<const std::uint8_t> rgb,
                      bool smooth) {
-  const std::unique_ptr<cairo_surface_t, Free> image(
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+  const std::shared_ptr<cairo_surface_t> image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
+                                               Free{});
   unsigned char* data = cairo_image_surface_get_data(image.get());
   if (data == nullptr) throw WorkError("figure: a picture is too large to be drawn");
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image.get()));
@@ -171,17 +191,16 @@ void Figure::picture(const Rectangle& at, int width, int height, std::span<const
     }
   }
   cairo_surface_mark_dirty(image.get());
-  cairo_t* c = context_.get();
-  cairo_save(c);
-  cairo_rectangle(c, at.x, at.y, at.width, at.height);
-  cairo_clip(c);
-  cairo_translate(c, at.x, at.y);
-  cairo_scale(c, at.width / width, at.height / height);
-  cairo_set_source_surface(c, image.get(), 0.0, 0.0);
-  cairo_pattern_set_filter(cairo_get_source(c), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
-  cairo_pattern_set_extend(cairo_get_source(c), CAIRO_EXTEND_PAD);
-  cairo_paint(c);
-  cairo_restore(c);
+  draw([=](cairo_t* c) {
+    cairo_rectangle(c, at.x, at.y, at.width, at.height);
+    cairo_clip(c);
+    cairo_translate(c, at.x, at.y);
+    cairo_scale(c, at.width / width, at.height / height);
+    cairo_set_source_surface(c, image.get(), 0.0, 0.0);
+    cairo_pattern_set_filter(cairo_get_source(c), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+    cairo_pattern_set_extend(cairo_get_source(c), CAIRO_EXTEND_PAD);
+    cairo_paint(c);
+  });
 }
 
 void Figure::picture(const Rectangle& at, const RgbImage& image, bool smooth) {
@@ -189,16 +208,20 @@ void Figure::picture(const Rectangle& at, const RgbImage& image, bool smooth) {
 }
 
 void Figure::fill(const Rectangle& at, const Ink& ink) {
-  set(ink);
-  cairo_rectangle(context_.get(), at.x, at.y, at.width, at.height);
-  cairo_fill(context_.get());
+  draw(
+      [=](cairo_t* c) {
+        cairo_rectangle(c, at.x, at.y, at.width, at.height);
+        cairo_fill(c);
+      },
+      ink);
 }
 
 void Figure::frame(const Rectangle& at) {
-  set({});
-  cairo_set_line_width(context_.get(), 0.7);
-  cairo_rectangle(context_.get(), at.x, at.y, at.width, at.height);
-  cairo_stroke(context_.get());
+  draw([=](cairo_t* c) {
+    cairo_set_line_width(c, 0.7);
+    cairo_rectangle(c, at.x, at.y, at.width, at.height);
+    cairo_stroke(c);
+  });
 }
 
 void Figure::axes(const Rectangle& at, const Axis& x, const Axis& y, bool grid) {
@@ -237,33 +260,41 @@ void Figure::y_axis_on_the_right(const Rectangle& at, const Axis& y) {
 void Figure::curve(const Rectangle& at, const Axis& x, const Axis& y,
                    const std::vector<std::pair<double, double>>& points, const Ink& ink) {
   constexpr std::size_t kFew = 60;
-  cairo_t* c = context_.get();
-  const auto px = [&](double value) { return place_along_x(value, x, at); };
-  const auto py = [&](double value) { return place_along_y(value, y, at); };
-  set(ink);
-  cairo_set_line_width(c, 1.4);
-  cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
-  cairo_new_path(c);  // text leaves a point behind
-  for (const auto& [vx, vy] : points) cairo_line_to(c, px(vx), py(vy));
-  cairo_stroke(c);
-  if (points.size() > kFew) return;
-  for (const auto& [vx, vy] : points) {
-    cairo_arc(c, px(vx), py(vy), 2.0, 0.0, 2.0 * std::numbers::pi);
-    cairo_fill(c);
-  }
+  draw(
+      [=](cairo_t* c) {
+        const auto px = [&](double value) { return place_along_x(value, x, at); };
+        const auto py = [&](double value) { return place_along_y(value, y, at); };
+        cairo_set_line_width(c, 1.4);
+        cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+        for (const auto& [vx, vy] : points) cairo_line_to(c, px(vx), py(vy));
+        cairo_stroke(c);
+        if (points.size() > kFew) return;
+        for (const auto& [vx, vy] : points) {
+          cairo_arc(c, px(vx), py(vy), 2.0, 0.0, 2.0 * std::numbers::pi);
+          cairo_fill(c);
+        }
+      },
+      ink);
 }
 
 void Figure::circle(const Rectangle& inside, double x, double y, double radius, double line_width,
                     const Ink& ink) {
-  cairo_t* c = context_.get();
-  cairo_save(c);
-  cairo_rectangle(c, inside.x, inside.y, inside.width, inside.height);
-  cairo_clip(c);
-  set(ink);
-  cairo_set_line_width(c, line_width);
-  cairo_arc(c, x, y, radius, 0.0, 2.0 * std::numbers::pi);
-  cairo_stroke(c);
-  cairo_restore(c);
+  draw(
+      [=](cairo_t* c) {
+        cairo_rectangle(c, inside.x, inside.y, inside.width, inside.height);
+        cairo_clip(c);
+        cairo_set_line_width(c, line_width);
+        cairo_arc(c, x, y, radius, 0.0, 2.0 * std::numbers::pi);
+        cairo_stroke(c);
+      },
+      ink);
+}
+
+void Figure::draw_on(cairo_surface_t* page, double scale, const std::filesystem::path& file) const {
+  const std::unique_ptr<cairo_t, Free> c(cairo_create(page));
+  cairo_scale(c.get(), scale, scale);
+  for (const auto& step : steps_) step(c.get());
+  require_success(cairo_status(c.get()), file);
 }
 
 void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch) const {
@@ -271,28 +302,29 @@ void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch
   const std::unique_ptr<cairo_surface_t, Free> page(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)),
                                  static_cast<int>(std::lround(height_ * scale))));
-  const std::unique_ptr<cairo_t, Free> c(cairo_create(page.get()));
-  // The page may end at a fraction of a pixel: the last row and column of pixels are then painted white here.
-  cairo_set_source_rgb(c.get(), 1.0, 1.0, 1.0);
-  cairo_paint(c.get());
-  cairo_scale(c.get(), scale, scale);
-  cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
-  cairo_paint(c.get());
-  require_success(cairo_status(context_.get()), file);
+  draw_on(page.get(), scale, file);
   OutputFile out(file);
   require_success(cairo_surface_write_to_png_stream(page.get(), append, &out), file);
   out.commit();
 }
 
 void Figure::write_svg(const std::filesystem::path& file) const {
-  require_success(cairo_status(context_.get()), file);
+  write_vectors(file, [](OutputFile& out, double width, double height) {
+    return cairo_svg_surface_create_for_stream(append, &out, width, height);
+  });
+}
+
+void Figure::write_pdf(const std::filesystem::path& file) const {
+  write_vectors(file, [](OutputFile& out, double width, double height) {
+    return cairo_pdf_surface_create_for_stream(append, &out, width, height);
+  });
+}
+
+void Figure::write_vectors(const std::filesystem::path& file, VectorPage* make) const {
   OutputFile out(file);
   {
-    const std::unique_ptr<cairo_surface_t, Free> page(
-        cairo_svg_surface_create_for_stream(append, &out, width_, height_));
-    const std::unique_ptr<cairo_t, Free> c(cairo_create(page.get()));
-    cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
-    cairo_paint(c.get());
+    const std::unique_ptr<cairo_surface_t, Free> page(make(out, width_, height_));
+    draw_on(page.get(), 1.0, file);
     cairo_surface_finish(page.get());
     require_success(cairo_surface_status(page.get()), file);
   }

@@ -1,8 +1,9 @@
-// A page that is drawn once and written as PNG and as SVG: text, pictures, curves and axes.
+// A page that is drawn once and written as PNG, SVG or PDF: text, pictures, curves and axes.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,8 @@ struct _cairo;
 struct _cairo_surface;
 
 namespace astrolith {
+
+class OutputFile;
 
 struct Axis {
   double low = 0.0, high = 1.0;                       // values at the two ends; high may lie below low
@@ -72,22 +75,30 @@ class Figure {
   double width() const { return width_; }
   double height() const { return height_; }
 
-  // Both throw InputError where the file cannot be written, WorkError where the page cannot be drawn.
+  // Each throws InputError where the file cannot be written, WorkError where the page cannot be drawn.
   void write_png(const std::filesystem::path& file, double pixels_per_inch) const;
   void write_svg(const std::filesystem::path& file) const;
+  void write_pdf(const std::filesystem::path& file) const;
 
  private:
-  void set(const Ink& ink);
-  // Selects the font and measures valid UTF-8 text in it.
-  double text_width(const std::string& text, double size, bool bold = false);
+  using VectorPage = _cairo_surface*(OutputFile& out, double width, double height);
+
+  // Adds a step in its own state of the context, with `ink` as its colour. Steps are kept as functions,
+  // because Cairo 1.16 never frees a recording that it has painted on a page of SVG.
+  void draw(std::function<void(_cairo*)> step, const Ink& ink = {});
+  void text(double x, double y, double angle, const std::string& words, double size, Align align, bool bold,
+            const Ink& ink);
+  double text_width(const std::string& words, double size, bool bold = false) const;  // of valid UTF-8
+  void draw_on(_cairo_surface* page, double scale, const std::filesystem::path& file) const;
+  void write_vectors(const std::filesystem::path& file, VectorPage* make) const;
 
   struct Free {
     void operator()(_cairo* context) const;
     void operator()(_cairo_surface* surface) const;
   };
   double width_, height_;
-  std::unique_ptr<_cairo_surface, Free> surface_;
-  std::unique_ptr<_cairo, Free> context_;
+  std::unique_ptr<_cairo, Free> measure_;  // has the size of text
+  std::vector<std::function<void(_cairo*)>> steps_;
 };
 
 // The place on the page of a value on a horizontal or a vertical axis of the diagram `at`.

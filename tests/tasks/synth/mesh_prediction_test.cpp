@@ -117,7 +117,7 @@ TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
   const Recipe recipe = hills();
   Recipe eroded = recipe;
   eroded.erosion = Erosion{.talus_angle = 30.0};
-  constexpr int kFine = 2048;  // so that its bytes are more than the test itself has taken
+  constexpr int kFine = 8192;  // so that its bytes are far more than this process has taken before
   const MeshPrediction plain = predicted(recipe, kFine);
   const MeshPrediction labels = predicted(recipe, MeshSpec{.resolution = kFine, .labels = true}),
                        gravity = predicted(recipe, MeshSpec{.resolution = kFine, .gravity = {2000, 6}}),
