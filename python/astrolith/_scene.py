@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import threading
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
@@ -222,8 +224,12 @@ class Scene:
         The normal albedo: a number, (n) numbers for the vertices, a word of ``synth --albedo`` for recipes, such as
         "bennu", or a list of these, one for each body. None: that of the recipe, from the 8 bits of its colours; without
         one I/F is that of the law of reflection alone.
+    detail
+        Recipes are made for each camera: ground that the picture shows gets cells about `detail` pixels wide, .25 to 16,
+        with all that the recipe has of that size, and other ground coarse ones. An albedo is then a number or a word. The
+        `facet` of an image is one of that picture's mesh. None: each recipe is meshed once.
     options
-        How recipes are meshed: options of :func:`mesh`, such as ``triangles=1_000_000``.
+        How recipes are meshed without `detail`: options of :func:`mesh`, such as ``triangles=1_000_000``.
 
     Raises
     ------
@@ -232,8 +238,9 @@ class Scene:
 
     Notes
     -----
-    Calls may run in several threads of Python; they do not hold its lock. A call takes the poses of its beginning. The
-    same arguments give the same arrays for any number of threads.
+    Calls may run in several threads of Python; they do not hold its lock, and with `detail` one waits for the other. A
+    call takes the poses of its beginning. The same arguments give the same arrays for any number of threads; ranges with
+    `detail` are those of the ground that the last picture, or :meth:`look`, needed.
 
     Examples
     --------
@@ -249,6 +256,7 @@ class Scene:
         bodies: Union[MeshLike, RecipeLike, Sequence[Union[MeshLike, RecipeLike]]],
         *,
         albedo: Any = None,
+        detail: Optional[float] = None,
         threads: int = 0,
         progress: Progress = None,
         **options: Any,
@@ -257,9 +265,20 @@ class Scene:
         albedos = albedo if isinstance(bodies, list) and isinstance(albedo, list) else [albedo] * len(given)
         if not given or len(albedos) != len(given):
             raise ValueError(f"albedo: has {len(albedos)} entries for {len(given)} bodies; give one for each body, of one at least")
+        if detail is not None:
+            detail = _arrays.number(detail, "detail", 0.25, 16.0)
+            if options:
+                raise ValueError(f"{', '.join(options)}: are for recipes that are meshed once; leave them or detail out")
+            if not any(is_recipe(body) for body in given):
+                raise ValueError("detail: is for recipes, and these are meshes; leave it out")
         self._scene = _synthesis.Scene()
+        self._lock = threading.Lock()
+        self._detailed: list[Any] = []
         for k, (body, value) in enumerate(zip(given, albedos)):
             name = f"bodies[{k}]" if isinstance(bodies, list) else "bodies"
+            if is_recipe(body) and detail is not None:
+                self._add_detailed(body, detail, value, threads, progress)
+                continue
             if is_recipe(body):
                 words = {"albedo": value} if isinstance(value, str) else {}
                 made = mesh_recipe(body, threads=threads, progress=progress, **words, **options)
@@ -283,6 +302,36 @@ class Scene:
                 raise ValueError(f"albedo: has the shape {values.shape}; give a number, or one for each of {len(arrays.vertices)} vertices")
             values = np.ascontiguousarray(values)
         self._scene.add(arrays.vertices, arrays.faces, arrays.normals, values, _options.threads(threads), progress)
+
+    def _add_detailed(self, body: RecipeLike, detail: float, albedo: Any, threads: int, progress: Progress) -> None:
+        json, name = json_of(body, "bodies")
+        word = albedo if isinstance(albedo, str) else ""
+        number = 0.0 if albedo is None or word else _arrays.number(albedo, "albedo", 1e-6, 10.0)
+        made = _synthesis.DetailedBody(json, name, detail, word, number)
+        made.add_to(self._scene, _options.threads(threads), progress)
+        self._detailed.append(made)
+
+    def look(self, camera: Camera, *, threads: int = 0, progress: Progress = None) -> float:
+        """Make the ground of recipes in `detail` what a camera needs, as :meth:`image` does before its picture.
+
+        Returns
+        -------
+        float
+            The edge of the finest cells, in lengths of the scene; NaN for a scene without `detail`.
+
+        Raises
+        ------
+        ValueError
+            The ground would have more than 3e7 triangles.
+        """
+        with self._lock:
+            return self._look(camera, threads, progress)
+
+    def _look(self, camera: Camera, threads: int, progress: Progress) -> float:
+        seen = camera._checked()
+        return min(
+            (body.look(self._scene, *seen, _options.threads(threads), progress) for body in self._detailed), default=float("nan")
+        )
 
     def __repr__(self) -> str:
         return f"<astrolith.Scene: {self._size} {'body' if self._size == 1 else 'bodies'}>"
@@ -345,17 +394,19 @@ class Scene:
         """
         if not isinstance(camera, Camera):
             raise TypeError(f"camera: must be an astrolith.Camera, and is {type(camera).__name__}")
-        return Image(
-            **self._scene.image(
-                *camera._checked(),
-                _arrays.vector(sun, "sun"),
-                _arrays.text(reflectance, "reflectance"),
-                _arrays.integer(oversampling, "oversampling", 1, 16),
-                _arrays.flag(smooth, "smooth"),
-                _options.threads(threads),
-                progress,
-            )
+        arguments = (
+            *camera._checked(),
+            _arrays.vector(sun, "sun"),
+            _arrays.text(reflectance, "reflectance"),
+            _arrays.integer(oversampling, "oversampling", 1, 16),
+            _arrays.flag(smooth, "smooth"),
+            _options.threads(threads),
+            progress,
         )
+        with self._lock if self._detailed else contextlib.nullcontext():
+            if self._detailed:
+                self._look(camera, threads, progress)
+            return Image(**self._scene.image(*arguments))
 
     def ranges(
         self,

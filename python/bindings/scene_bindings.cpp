@@ -1,4 +1,5 @@
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -6,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +18,10 @@
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
+#include "python/bindings/recipe_text.h"
 #include "python/bindings/synthesis_bindings.h"
+#include "synthesis/finish/known_albedo.h"
+#include "synthesis/finish/view_ground.h"
 #include "synthesis/picture/scene.h"
 
 namespace astrolith::python {
@@ -48,6 +54,65 @@ std::size_t add(Scene& scene, const Rows<double>& vertices, const Rows<std::uint
   scene = std::move(longer);
   return scene.size() - 1;
 }
+
+// A body of a scene whose ground is what the last camera needed.
+class DetailedBody {
+ public:
+  // An albedo in words is given to the recipe; a number is that of all ground, and 0 or less is none.
+  DetailedBody(const std::string& json, const std::filesystem::path& name, double cell,
+               const std::string& albedo_name, double albedo)
+      : albedo_(albedo) {
+    Recipe recipe = loaded_recipe(json, name);
+    if (!albedo_name.empty()) set_albedo(recipe, named_albedo(albedo_name, recipe.seed));
+    ground_ = std::make_unique<ViewGround>(recipe, name.string(), cell);
+  }
+
+  // Adds the body to a scene, as it is seen from far away.
+  void add_to(Scene& scene, int threads, nb::object progress) {
+    constexpr double kFar = 1e15;
+    run_job(
+        std::move(progress), threads,
+        [&](JobState& state) {
+          shown_ = ground_->look({{}, {0.0, 0.0, -kFar}, kIdentity3}, state.progress("ground"));
+          body_ = scene.add(shown_->mesh, albedos());
+          return true;
+        },
+        true);
+  }
+
+  // Makes the body what the camera needs, and returns the edge of the finest cells.
+  double look(Scene& scene, int width, int height, const std::array<double, 10>& calibration,
+              const std::array<double, 3>& position, const Matrix3& axes, int threads, nb::object progress) {
+    Scene changed = scene;
+    run_job(
+        std::move(progress), threads,
+        [&](JobState& state) {
+          const SceneCamera camera = make_camera(width, height, calibration, position, axes);
+          const auto look =
+              ground_->look(in_axes_of_body(camera, scene.pose(body_)), state.progress("ground"));
+          if (look == shown_) return true;
+          shown_ = look;
+          changed.replace(body_, look->mesh, albedos());
+          return true;
+        },
+        true);
+    scene = std::move(changed);
+    return shown_->finest;
+  }
+
+  std::size_t triangles() const { return shown_->mesh.triangles.size(); }
+
+ private:
+  std::vector<float> albedos() const {
+    if (albedo_ <= 0.0) return shown_->albedo;
+    return std::vector<float>(shown_->mesh.vertices.size(), static_cast<float>(albedo_));
+  }
+
+  double albedo_;
+  std::unique_ptr<ViewGround> ground_;
+  std::shared_ptr<const GroundLook> shown_;
+  std::size_t body_ = 0;
+};
 
 Named image(const Scene& scene, int width, int height, const std::array<double, 10>& calibration,
             const std::array<double, 3>& position, const Matrix3& axes, const std::array<double, 3>& sun,
@@ -126,6 +191,15 @@ void bind_scene(nb::module_& module) {
       .def("ranges", &ranges, nb::arg("origins").noconvert(), nb::arg("directions").noconvert(),
            nb::arg("noise"), nb::arg("beam"), nb::arg("seed"), nb::arg("threads"),
            nb::arg("progress").none());
+  nb::class_<DetailedBody>(module, "DetailedBody")
+      .def(nb::init<const std::string&, const std::filesystem::path&, double, const std::string&, double>(),
+           nb::arg("json"), nb::arg("name"), nb::arg("cell"), nb::arg("albedo_name"), nb::arg("albedo"),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("add_to", &DetailedBody::add_to, nb::arg("scene"), nb::arg("threads"), nb::arg("progress").none())
+      .def("look", &DetailedBody::look, nb::arg("scene"), nb::arg("width"), nb::arg("height"),
+           nb::arg("calibration"), nb::arg("position"), nb::arg("axes"), nb::arg("threads"),
+           nb::arg("progress").none())
+      .def("triangles", &DetailedBody::triangles);
   module.def("project", &project, nb::arg("width"), nb::arg("height"), nb::arg("calibration"),
              nb::arg("position"), nb::arg("axes"), nb::arg("points").noconvert());
 }

@@ -200,3 +200,86 @@ def test_a_detector_spreads_counts_and_adds_noise():
     ):
         with pytest.raises(ValueError, match=name):
             call()
+
+
+STONY = {
+    "format_version": 1,
+    "length_unit": "m",
+    "seed": 3,
+    "origin": [1000.0, 0.0, 0.0],
+    "albedo": {"normal": 0.05},
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100], [90, 0, 0, 70]]},
+    "layers": [
+        {"type": "simplex", "amplitude": 2.0, "frequency": 0.02, "octaves": 6},
+        {
+            "type": "boulders",
+            "population": {"density": 0.5, "least_diameter": 0.5, "greatest_diameter": 5, "exponent": 2.5, "by_cells": True},
+        },
+    ],
+}
+
+
+def above(scene, height, **changes):
+    """A camera this far above the ground below (1000, 0, 300)."""
+    top = scene.ranges((1000.0, 0.0, 300.0), [[0.0, 0.0, -1.0]]).range[0]
+    place = np.array([1000.0, 0.0, 300.0 - top])
+    return astrolith.Camera(64, 64, 80.0, **changes).look_at(place + (0.0, 0.1 * height, height), place, up=(1, 0, 0))
+
+
+def test_detail_follows_the_camera():
+    scene = astrolith.Scene(STONY, detail=2.0)
+    far = above(scene, 900.0)
+    assert scene.look(far) > 1.0
+    near = above(scene, 20.0)
+    assert 0.25 < scene.look(near) / (2.0 * 20.0 / 80.0) <= 1.2
+    image = scene.image(near, SUN, threads=2)
+    assert (image.body == 0).all()  # no gap between two levels
+    fresh = astrolith.Scene(STONY, detail=2.0).image(near, SUN, threads=1)
+    for name in ("radiance", "depth", "facet"):
+        np.testing.assert_array_equal(getattr(fresh, name), getattr(image, name))
+    # The law's value from above is 1/2; the brightest ground has its albedo, whatever its slope.
+    assert 0.03 < np.percentile(image.radiance, 99) < 0.08
+
+
+def test_detail_lies_on_the_surface():
+    plain = {**STONY, "layers": STONY["layers"][:1]}
+    scene = astrolith.Scene(plain, detail=1.0)
+    camera = above(scene, 30.0)
+    cell = scene.look(camera)
+    image = scene.image(camera, SUN)
+    row, column = np.nonzero(image.body == 0)
+    x, y = (column - 31.5) / 80.0, (row - 31.5) / 80.0
+    seen = np.stack([x, y, np.ones_like(x)], axis=1) * image.depth[row, column, None]
+    points = seen @ np.asarray(camera.rotation) + camera.position
+    assert np.abs(astrolith.Field(plain).value(points)).max() < 0.1 * cell
+
+
+def test_detail_keeps_poses_and_several_bodies():
+    scene = astrolith.Scene([STONY, sphere(20)], detail=2.0, albedo=["bennu", 0.1])
+    quarter = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    scene.pose(0, rotation=quarter, position=(10.0, 0.0, 0.0))
+    camera = astrolith.Camera(32, 32, 40.0).look_at((10.0, 1000.0, 130.0), (10.0, 1000.0, 0.0), up=(1, 0, 0))
+    assert scene.look(camera) < 2.0
+    image = scene.image(camera, SUN)
+    assert (image.body == 0).all()
+    assert 0.01 < np.median(image.radiance[image.radiance > 0]) < 0.1
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (dict(detail=40), "detail"),
+        (dict(detail=2, triangles=1000), "triangles: are for recipes that are meshed once"),
+        (dict(detail=2, albedo="mars"), "albedo: there is none of mars"),
+    ],
+)
+def test_detail_refuses(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        astrolith.Scene(STONY, **arguments)
+
+
+def test_detail_refuses_meshes_and_erosion():
+    with pytest.raises(ValueError, match="detail: is for recipes"):
+        astrolith.Scene(sphere(10), detail=2)
+    with pytest.raises(ValueError, match="erosion: acts on a whole mesh"):
+        astrolith.Scene({**STONY, "erosion": {"talus_angle": 30}}, detail=2)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "recipe/recipe.h"
@@ -10,11 +12,16 @@
 
 namespace astrolith {
 
+// What fields of one recipe need not find twice, by the place of the layer that it belongs to: what it is the
+// layer's own room knows.
+using SharedWork = std::map<std::string, std::shared_ptr<void>>;
+
 // A layer's origin in its recipe.
 struct LayerSource {
-  const Recipe& recipe;  // it has a body
-  int number;            // layer_number(), recipe/noise_layers.h
-  std::string place;     // "recipe: layers[2]", for messages
+  const Recipe& recipe;          // it has a body
+  int number;                    // layer_number(), recipe/noise_layers.h
+  std::string place;             // "recipe: layers[2]", for messages
+  SharedWork* shared = nullptr;  // of the field that is made; none for a layer without a field
 };
 
 // Writes F of the body with the layers below (implicit_field.h) at n points in the coordinates of a frame,

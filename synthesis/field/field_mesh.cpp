@@ -18,6 +18,10 @@ template EvenStatistics even_mesh(const PatchField&, double, RecordedMesh&, cons
 template ProbeFigures probe_surface<kBlockCells>(const ImplicitField&, const ProbedMesh&, int);
 template ProbeFigures probe_surface<kBlockCells>(const PatchField&, const ProbedMesh&, int);
 
+MeshStatistics mesh_part(const PatchField& field, const SampleGrid& grid, MeshSink& sink) {
+  return LayeredMesher<kBlockCells, PatchField>(field, {grid, patch_window(grid), false}, sink).run({});
+}
+
 TriangleMesh make_coarse_mesh(const ImplicitField& field, int resolution, MeshStatistics* made) {
   MeshCollector collector;
   const MeshStatistics statistics =

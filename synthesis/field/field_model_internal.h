@@ -2,11 +2,13 @@
 // which the CPU finds elements of the tables.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "numerics/box_tree.h"
+#include "synthesis/body/layer_site.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/gabor/gabor_bricks.h"
@@ -20,6 +22,7 @@ struct PatchCraters {
 };
 
 struct FieldModel {
+  std::shared_ptr<SharedWork> shared = std::make_shared<SharedWork>();  // with other fields of the recipe
   // The storage of the tables (field_tables.h).
   ArrayStore arrays;
   BodyTables body;

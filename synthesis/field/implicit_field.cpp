@@ -117,12 +117,14 @@ void FieldBlock::paint(const SurfacePaints& paints, const Vec3d* origin, std::sp
 }
 
 ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
-                             const std::optional<PatchCube>& patch, const Progress& progress) {
+                             const std::optional<PatchCube>& patch, const Progress& progress,
+                             const ImplicitField* like) {
   if (!recipe.body || (!recipe.body->morph && recipe.body->spheres.empty())) {
     throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
   auto model = std::make_shared<FieldModel>();
   model->patch = patch;
+  if (like != nullptr) model->shared = like->model_->shared;
   model->body = make_body(*recipe.body, recipe.seed, model->arrays);
   model->update();
   model->metaballs = all_metaballs(model->body, model->tables.arrays);

@@ -105,7 +105,8 @@ class LayerStack {
     const bool moves = has_height(layer);
     if (!moves && !paints(layer) && !kind.use.albedo) return;
     FieldModel& model = stack_.model;
-    const LayerSource source{stack_.recipe, layer_number(kind.seed, stack_.index), stack_.place()};
+    const LayerSource source{stack_.recipe, layer_number(kind.seed, stack_.index), stack_.place(),
+                             model.shared.get()};
     const LayerMaker maker = layer_maker(layer, source, model.arrays);
     const std::size_t number = model.layers.size();
     const NoiseFrame frame(Kind::kTraits.on_surface ? stack_.supports : joins_.domain());

@@ -166,7 +166,8 @@ double StackLandforms::height_reach() {
         bound += largest_rise(kind);
       } else if (has_height(layer)) {
         ArrayStore discarded;
-        const LayerSource source{stack_.recipe, layer_number(kind.seed, i), stack_.layer_path(i)};
+        const LayerSource source{stack_.recipe, layer_number(kind.seed, i), stack_.layer_path(i),
+                                 stack_.model.shared.get()};
         const LayerNoise noise =
             layer_maker(layer, source, discarded)(stack_.site(whole, stack_.model.layers.size()), discarded);
         bound = elevation_bound(kind.use.combination, bound, noise_height_bound(noise));

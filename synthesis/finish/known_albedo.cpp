@@ -1,10 +1,13 @@
 #include "synthesis/finish/known_albedo.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/portable_double.h"
 
@@ -109,6 +112,16 @@ KnownAlbedo drawn_albedo(std::uint64_t seed) {
   known.ground.normal = normal;
   known.source = "drawn for a near-Earth asteroid (Wright et al. 2016)";
   return known;
+}
+
+KnownAlbedo named_albedo(std::string_view name, std::uint64_t seed) {
+  if (name == kDrawnAlbedo) return drawn_albedo(seed);
+  std::string names;
+  for (const KnownAlbedo& known : known_albedos()) {
+    if (known.name == name) return known;
+    names += fmt::format("{}, ", known.name);
+  }
+  throw InputError(fmt::format("albedo: there is none of {}; give one of {}{}", name, names, kDrawnAlbedo));
 }
 
 void set_albedo(Recipe& recipe, const KnownAlbedo& known) {

@@ -20,11 +20,15 @@ struct KnownAlbedo {
 };
 
 std::span<const KnownAlbedo> known_albedos();
+inline constexpr const char* kDrawnAlbedo = "drawn";
 
 // A ground of an albedo drawn for a near-Earth asteroid: of two Rayleigh distributions, 25 % about .030 and
 // the others about .168 (Wright et al. 2016). Dark ones are of the kind of Bennu's ground, bright ones of
 // Itokawa's, each with a spectral slope of its own.
 KnownAlbedo drawn_albedo(std::uint64_t seed);
+
+// The known albedo of a name, or for "drawn" that which the seed draws. Throws InputError for another name.
+KnownAlbedo named_albedo(std::string_view name, std::uint64_t seed);
 
 // Gives the recipe this albedo in place of its own: the ground, its mottles as a layer of noise after all
 // others, and the layers of craters and boulders. Expects a recipe with a body.

@@ -95,6 +95,16 @@ std::vector<Vec3d> spread_beam(const Vec3d& middle, double beam) {
 
 }  // namespace
 
+SceneCamera in_axes_of_body(const SceneCamera& camera, const BodyPose& pose) {
+  Matrix3 axes;
+  std::size_t row = 0;
+  for (const Vec3d& axis : {camera.right(), camera.down(), camera.boresight()}) {
+    const Vec3d v = rotate_back(pose.rotation, axis);
+    axes[row++] = {v.x, v.y, v.z};
+  }
+  return {camera.calibration(), rotate_back(pose.rotation, camera.position() - pose.position), axes};
+}
+
 struct Scene::Body {
   Body(const TriangleMesh& given, const std::vector<float>& given_albedo)
       : mesh(given),
@@ -163,10 +173,8 @@ struct Scene::Hit {
   bool found() const { return range < kNone; }
 };
 
-std::size_t Scene::add(const TriangleMesh& mesh, const std::vector<float>& albedo) {
-  constexpr std::size_t kMostBodies = 1000;
-  if (bodies_.size() == kMostBodies)
-    throw InputError(fmt::format("scene: holds at most {} bodies", kMostBodies));
+std::shared_ptr<const Scene::Body> Scene::make_body(const TriangleMesh& mesh,
+                                                    const std::vector<float>& albedo) {
   if (!albedo.empty() && albedo.size() != mesh.vertices.size()) {
     throw InputError(fmt::format("scene: {} albedos for {} vertices; give one a vertex, or none",
                                  albedo.size(), mesh.vertices.size()));
@@ -175,17 +183,33 @@ std::size_t Scene::add(const TriangleMesh& mesh, const std::vector<float>& albed
     if (!(a >= 0 && a <= 10))
       throw InputError(fmt::format("scene: an albedo of {:g}; it must be 0 to 10", a));
   }
-  bodies_.push_back({std::make_shared<const Body>(mesh, albedo), {}});
-  return bodies_.size() - 1;
+  return std::make_shared<const Body>(mesh, albedo);
 }
 
-void Scene::place(std::size_t body, const BodyPose& pose) {
+Scene::Placed& Scene::placed(std::size_t body) {
   if (body >= bodies_.size()) {
     throw InputError(
         fmt::format("pose: there is no body {}; the scene has {}, from 0", body, bodies_.size()));
   }
+  return bodies_[body];
+}
+
+std::size_t Scene::add(const TriangleMesh& mesh, const std::vector<float>& albedo) {
+  constexpr std::size_t kMostBodies = 1000;
+  if (bodies_.size() == kMostBodies)
+    throw InputError(fmt::format("scene: holds at most {} bodies", kMostBodies));
+  bodies_.push_back({make_body(mesh, albedo), {}});
+  return bodies_.size() - 1;
+}
+
+void Scene::replace(std::size_t body, const TriangleMesh& mesh, const std::vector<float>& albedo) {
+  placed(body).body = make_body(mesh, albedo);
+}
+
+void Scene::place(std::size_t body, const BodyPose& pose) {
+  Placed& moved = placed(body);
   if (!std::isfinite(squared_norm(pose.position))) throw InputError("pose: the position is not finite");
-  bodies_[body].pose = {checked_rotation("pose: rotation", pose.rotation), pose.position};
+  moved.pose = {checked_rotation("pose: rotation", pose.rotation), pose.position};
 }
 
 Scene::Hit Scene::first_hit(const Vec3d& origin, const Vec3d& direction) const {

@@ -23,6 +23,9 @@ struct BodyPose {
   Vec3d position;
 };
 
+// The camera of a scene in the axes of a body.
+SceneCamera in_axes_of_body(const SceneCamera& camera, const BodyPose& pose);
+
 struct SceneImageOptions {
   Reflectance reflectance;
   // Samples of I/F along the side of a pixel, 1 .. 16; their mean is taken. All else is of the pixel's
@@ -65,8 +68,11 @@ class Scene {
   // have the albedo where sun and viewer are above the ground. Throws InputError for a mesh that RayScene
   // refuses and for another number of albedos.
   std::size_t add(const TriangleMesh& mesh, const std::vector<float>& albedo = {});
+  // Gives a body another mesh in the same pose; throws as add() and place() do.
+  void replace(std::size_t body, const TriangleMesh& mesh, const std::vector<float>& albedo = {});
   // Throws InputError for a body that is not there and for a pose that is none.
   void place(std::size_t body, const BodyPose& pose);
+  const BodyPose& pose(std::size_t body) const { return bodies_.at(body).pose; }
   std::size_t size() const { return bodies_.size(); }
 
   // The sun is a point far away, in a direction of any length above 0. Bodies shade themselves and each
@@ -91,6 +97,8 @@ class Scene {
   };
   struct Hit;
 
+  static std::shared_ptr<const Body> make_body(const TriangleMesh& mesh, const std::vector<float>& albedo);
+  Placed& placed(std::size_t body);
   Hit first_hit(const Vec3d& origin, const Vec3d& direction) const;
   bool sees_sun(const Hit& hit, const Vec3d& point, const Vec3d& lift, const Vec3d& sun) const;
   void require_outside(const SceneCamera& camera) const;

@@ -284,8 +284,13 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
   draw(layer, source, body, {body, places, tiles, heights}, *this);
 }
 
-PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {
+PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore&) {
   PreparedRelief prepared{{}, std::make_shared<ReliefGround>()};
+  if (source.shared != nullptr) {
+    std::shared_ptr<void>& held = (*source.shared)[source.place];
+    if (held == nullptr) held = prepared.ground;
+    prepared.ground = std::static_pointer_cast<ReliefGround>(held);
+  }
   prepared.noise.inverse_spacing = static_cast<float>(1.0 / lattice_spacing(layer));
   prepared.noise.detail.finest = lattice_spacing(layer);
   return prepared;

@@ -277,8 +277,8 @@ void require_body(const Recipe& recipe, const fs::path& file) {
 }
 
 ImplicitField make_region_field(const Recipe& recipe, const fs::path& file, const Region& region,
-                                const Progress& progress) {
-  ImplicitField field(recipe, file.string(), region.cube(), progress);
+                                const Progress& progress, const ImplicitField* like) {
+  ImplicitField field(recipe, file.string(), region.cube(), progress, like);
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
@@ -303,7 +303,7 @@ MeshPart make_body_part(const MeshSpec& spec, const Recipe& recipe, const fs::pa
         norm(*beside - region.center), recipe.length_unit, recipe.origin.x + beside->x,
         recipe.origin.y + beside->y, recipe.origin.z + beside->z));
     region.center = *beside;
-    part.field = make_region_field(recipe, file, region, progress);
+    part.field = make_region_field(recipe, file, region, progress, &part.field);
   }
   if (!needs_plane && !region.aligned) return part;
   if (const std::optional<ImplicitField> ground = make_ground_field(part)) place_on_ground(*ground, region);

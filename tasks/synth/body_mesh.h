@@ -86,9 +86,9 @@ struct MeshPart {
 void require_body(const Recipe& recipe, const std::filesystem::path& file);
 
 // The field of a recipe's body in a region. Throws InputError for a body that no point of space reaches, and
-// what ImplicitField throws.
+// what ImplicitField throws; `like` is as there.
 ImplicitField make_region_field(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
-                                const Progress& progress = {});
+                                const Progress& progress = {}, const ImplicitField* like = nullptr);
 
 // The part of the body that a spec names, with the spec's resolution. A patch whose cube the surface misses,
 // if there is surface within a fiftieth of the body, is moved onto it, of which `say` gets a line: so a place

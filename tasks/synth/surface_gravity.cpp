@@ -28,7 +28,7 @@ void check_gravity(const std::vector<double>& density_and_period, const Recipe& 
 
 PatchBody make_patch_body(const Job& job, const MeshPart& patch) {
   constexpr int kCells = 256, kCoarseCells = 64;
-  const ImplicitField field = make_region_field(patch.recipe, patch.file, {});
+  const ImplicitField field = make_region_field(patch.recipe, patch.file, {}, {}, &patch.field);
   const auto meshed = [&](int cells) {
     MeshCollector body;
     mesh_field(field, field.bounds(), cells, body, job.progress("body"));

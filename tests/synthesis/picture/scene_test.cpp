@@ -10,8 +10,10 @@
 
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/finish/view_ground.h"
 #include "tests/support/meshes.h"
 #include "tests/support/refusal.h"
+#include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
@@ -259,6 +261,57 @@ TEST(Scene, RefusesWhatCannotBe) {
   EXPECT_EQ(camera(-0.1, 700, 1024), "no error");
   EXPECT_TRUE(has(camera(0, 700, 20000), "20000 x 20000 pixels"));
   EXPECT_TRUE(has(camera(0, -1, 64), "focal lengths"));
+}
+
+// Waves on a ball, with stones that a patch of it draws by cells.
+Recipe stony_ball() {
+  Recipe recipe = testing::sphere_recipe(100.0);
+  recipe.origin = {500, 0, 0};
+  recipe.albedo = GroundAlbedo{.normal = 0.05};
+  recipe.layers.push_back(testing::fractal_layer(1.0, 0.02, 6));
+  BoulderLayer stones;
+  Population& drawn = stones.population.emplace().drawn;
+  drawn.density = 0.5;
+  drawn.least_diameter = 0.5;
+  drawn.greatest_diameter = 5.0;
+  drawn.exponent = 2.5;
+  drawn.by_cells = true;
+  recipe.layers.push_back(stones);
+  return recipe;
+}
+
+SceneCamera camera_above_ball(double height) {
+  return in_axes_of_body(camera_on_x(100.0 + height, 80.0), {kIdentity3, {-500, 0, 0}});
+}
+
+TEST(ViewGround, HasFineCellsWhereThePictureShowsThem) {
+  ViewGround ground(stony_ball(), "ball", 2.0);
+  const auto far = ground.look(camera_above_ball(5000.0));
+  EXPECT_EQ(far->levels, 1);
+  EXPECT_EQ(ground.look(camera_above_ball(5001.0)), far);
+  const auto near = ground.look(camera_above_ball(20.0));
+  EXPECT_LE(near->finest, 2.0 * 20.0 / 80.0);
+  EXPECT_GT(near->finest, 0.25 * 20.0 / 80.0);
+  EXPECT_EQ(near->albedo.size(), near->mesh.vertices.size());
+  for (const float a : near->albedo) ASSERT_NEAR(a, 0.05, 0.02);
+
+  Scene scene;
+  scene.add(near->mesh, near->albedo);
+  const SceneImage image = scene.image(camera_above_ball(20.0), {1.0, 0.4, 0.3});
+  for (const std::int16_t body : image.body) ASSERT_EQ(body, 0);  // no gap between levels
+
+  // What was looked at before does not matter, nor do threads.
+  const ThreadLimit one(1);
+  const auto again = ViewGround(stony_ball(), "ball", 2.0).look(camera_above_ball(20.0));
+  EXPECT_EQ(again->mesh.vertices, near->mesh.vertices);
+  EXPECT_EQ(again->mesh.triangles, near->mesh.triangles);
+}
+
+TEST(ViewGround, RefusesErosionAndSizesOfCells) {
+  Recipe recipe = stony_ball();
+  EXPECT_TRUE(has(refusal_text([&] { ViewGround(recipe, "ball", 20.0); }), "detail"));
+  recipe.erosion = Erosion{};
+  EXPECT_TRUE(has(refusal_text([&] { ViewGround(recipe, "ball", 2.0); }), "erosion"));
 }
 
 }  // namespace

@@ -179,6 +179,19 @@ TEST(ReliefNoise, MakesTheSameClosedMeshForAnyThreadCount) {
   }
 }
 
+// A field takes the laid heights of another field of the recipe, in the frame of a patch too.
+TEST(ReliefNoise, HasTheSameBitsInAFieldLikeAnother) {
+  const Recipe recipe = Covered::with_relief(potato_recipe(8, 7), 0.1, 0.1, waves);
+  const ImplicitField first(recipe);
+  const PatchCube cube{{0.5, 0.1, 0.0}, 0.5};
+  const ImplicitField own(recipe, "recipe", cube), like(recipe, "recipe", cube, {}, &first);
+  CounterRandom random(11);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3d p = cube.center + 0.2 * random_direction(random);
+    ASSERT_EQ(own.value(p), like.value(p)) << i;
+  }
+}
+
 TEST(ReliefNoise, RefusesTheHeightsOfAnotherBody) {
   Recipe recipe = Covered::with_relief(potato_recipe(60, 5), 0.02, 0.05, waves);
   recipe.body->spheres[3].radius *= 1.05;
