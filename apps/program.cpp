@@ -26,6 +26,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/printable_text.h"
+#include "numerics/process_limits.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
 
@@ -262,7 +263,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
     std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
     require_some_memory();
-    const ThreadLimit limit(threads);
+    const ThreadLimit limit(threads > 0 ? threads : usable_processors());
     timed(work);
     end_bar();
     return ended(part_failed_ ? 1 : 0);

@@ -61,12 +61,6 @@ inline void give_back_freed_memory() {
 #endif
 }
 
-// The memory that --max-memory allows, bytes. 0 gigabytes stands for three quarters of the machine's memory.
-inline double memory_limit(double gigabytes) {
-  if (gigabytes > 0.0) return 1e9 * gigabytes;
-  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
 // A sanitizer keeps memory of its own beside the program's, and ends a program whose allocation fails.
 #ifdef ASTROLITH_SANITIZED
 inline constexpr bool kMemoryIsTheProgramsOwn = false;

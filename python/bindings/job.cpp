@@ -10,6 +10,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 #include "numerics/printable_text.h"
+#include "numerics/process_limits.h"
 
 namespace nb = nanobind;
 
@@ -91,11 +92,7 @@ void run(const std::shared_ptr<JobState>& state, nb::object callback, int thread
   std::thread worker([state, threads, work = std::move(work)]() mutable {
     std::exception_ptr error;
     try {
-      if (threads > 0) {
-        tbb::task_arena(threads).execute(work);
-      } else {
-        work();
-      }
+      tbb::task_arena(threads > 0 ? threads : usable_processors()).execute(work);
     } catch (...) {
       error = std::current_exception();
     }

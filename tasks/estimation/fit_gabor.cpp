@@ -19,6 +19,7 @@
 #include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
+#include "numerics/process_limits.h"
 #include "tasks/estimation/photo_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"

@@ -19,6 +19,7 @@
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/files/relative_path.h"
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/bare_body.h"
@@ -175,10 +176,7 @@ MeasuredBody from_recipe(const fs::path& file, const PopulationOptions& options)
   }
   const double unit = meters_in(recipe.length_unit) / meters_in(options.unit);
   MeasuredBody measured = measured_body(body, bare_body(recipe).meshed_at(kFrameCells), unit);
-  if (has_relief(recipe)) {
-    const fs::path folder = fs::absolute(options.output).parent_path();
-    measured.recipe = fs::absolute(file).lexically_proximate(folder).string();
-  }
+  if (has_relief(recipe)) measured.recipe = relative_to(options.output, file);
   return measured;
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
+#include "numerics/files/relative_path.h"
 #include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/picture/image_file.h"
@@ -106,7 +107,6 @@ Recipe load_recipe(const std::filesystem::path& file) {
 }
 
 void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   int number = 0;
   for (Layer& layer : recipe.layers) {
     NamedImage* named = find_image(layer);
@@ -121,8 +121,7 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
         continue;
       }
     }
-    named->image =
-        named->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
+    named->image = relative_to(file, named->pixels->file);
   }
   write_recipe(recipe, file);
 }

@@ -7,6 +7,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 #include "numerics/files/output_file.h"
+#include "numerics/files/relative_path.h"
 #include "numerics/files/sha256.h"
 
 namespace astrolith {
@@ -70,10 +71,7 @@ bool Manifest::read_line(const std::string& line) {
   return true;
 }
 
-std::string Manifest::relative_name(const fs::path& file) const {
-  const fs::path folder = fs::absolute(file_).lexically_normal().parent_path();
-  return fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
-}
+std::string Manifest::relative_name(const fs::path& file) const { return relative_to(file_, file); }
 
 ManifestFile Manifest::describe_file(const fs::path& file) const {
   return {relative_name(file), fs::file_size(file), file_sha256(file)};

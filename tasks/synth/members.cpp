@@ -20,6 +20,7 @@
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
 #include "numerics/parallel_for.h"
+#include "numerics/process_limits.h"
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"

@@ -10,6 +10,7 @@
 #include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
+#include "numerics/process_limits.h"
 #include "synthesis/field/feature_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"

@@ -14,6 +14,7 @@
 #include "numerics/memory_use.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/process_limits.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"

@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "numerics/parallel_for.h"
+#include "numerics/process_limits.h"
 #include "numerics/reported_loop.h"
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
@@ -25,6 +27,42 @@ TEST(ParallelFor, EmptyRangeAndExceptions) {
                               if (i == 50) throw std::runtime_error("stop");
                             }),
                std::runtime_error);
+}
+
+// The tightest of a group and those around it counts. A page that can be dropped is free.
+TEST(ProcessLimits, AreThoseOfControlGroups) {
+  const testing::ScratchFolder folder;
+  const auto write = [&](const std::string& name, std::string_view content) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    folder.write(name, content);
+  };
+  write("second", "0::/job/step\n");
+  write("2/job/memory.max", "3000\n");
+  write("2/job/memory.current", "1800\n");
+  write("2/job/memory.stat", "anon 700\ninactive_file 500\n");
+  write("2/job/step/memory.max", "max\n");
+  write("2/job/step/memory.current", "100\n");
+  write("2/job/step/cpu.max", "150000 100000\n");
+  write("2/job/cpu.max", "max 100000\n");
+  const GroupLimits second = group_limits(folder / "second", folder / "2");
+  EXPECT_EQ(second.free_bytes, 1700.0);
+  EXPECT_EQ(second.processors, 1.5);
+  write("first",
+        "4:memory:/elsewhere\n2:cpu,cpuacct:/\n0::/\n");  // a container, which sees itself as the root
+  write("1/memory/memory.limit_in_bytes", "5000\n");
+  write("1/memory/memory.usage_in_bytes", "1000\n");
+  write("1/memory/memory.stat", "total_inactive_file 10\n");
+  write("1/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
+  write("1/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
+  const GroupLimits first = group_limits(folder / "first", folder / "1");
+  EXPECT_EQ(first.free_bytes, 4010.0);
+  EXPECT_EQ(first.processors, GroupLimits{}.processors);
+  write("1/memory/memory.limit_in_bytes", "9223372036854771712\n");  // none
+  EXPECT_EQ(group_limits(folder / "first", folder / "1").free_bytes, GroupLimits{}.free_bytes);
+  EXPECT_EQ(group_limits(folder / "absent", folder / "1").processors, GroupLimits{}.processors);
+  EXPECT_GE(usable_processors(), 1);
+  EXPECT_EQ(memory_limit(2.0), 2e9);
+  EXPECT_GT(memory_limit(0.0), 0.0);
 }
 
 TEST(ReportedLoop, VisitsEveryIndexOnceAndReportsAllOfTheRange) {

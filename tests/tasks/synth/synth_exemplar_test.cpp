@@ -107,6 +107,12 @@ TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
   succeed(recipe + " --write-recipe deep/w.json");
   EXPECT_EQ(std::get<ExemplarLayer>(read_recipe(folder_ / "deep/w.json").layers[0]).image, "../i.png");
   EXPECT_EQ(make_mesh(recipe, "a.ply"), make_mesh("deep/w.json", "b.ply"));
+  // Through a link the system leads .. to the folder around the linked one.
+  std::filesystem::create_directory(folder_ / "deep/deeper");
+  std::filesystem::create_directory_symlink("deep/deeper", folder_ / "link");
+  succeed(recipe + " --write-recipe link/w.json");
+  EXPECT_EQ(std::get<ExemplarLayer>(read_recipe(folder_ / "link/w.json").layers[0]).image, "../../i.png");
+  EXPECT_EQ(make_mesh(recipe, "a.ply"), make_mesh("link/w.json", "b.ply"));
 }
 
 // Vertices have colours in .ply and .glb, and other formats say that they have none.
