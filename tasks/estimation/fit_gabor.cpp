@@ -20,6 +20,7 @@
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "numerics/process_limits.h"
+#include "numerics/sample_statistics.h"
 #include "tasks/estimation/photo_recipe.h"
 #include "tasks/job/output_names.h"
 #include "tasks/job/words.h"
@@ -56,6 +57,14 @@ void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
          "simplest of those whose textures are nearest to squares of the photo that the model has not "
          "seen, by the distributions of values and of up to 12 filter responses)")
       .check(one_of({"gabor", "phase", "exemplar", "auto"}));
+  app.add_option(
+         "--border", o.border,
+         "how an exemplar goes on beyond the photo's border: periodic (without light from one side, which "
+         "does not repeat), matched (the same, in the photo's own grey values) or mirrored (the photo "
+         "itself; a texture that runs at a slant then runs both ways, and light comes from four sides); "
+         "without it the one whose textures are nearest to the photo in values, filters and direction")
+      .check(one_of({"periodic", "matched", "mirrored"}))
+      .default_text("");
   app.add_option(
          "--channels", o.channels,
          "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
@@ -262,6 +271,12 @@ PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
 
 // Options that are about lobes say nothing of the models without any.
 void check_model(const Job& job, const PhotoFitArguments& o) {
+  if (!o.border.empty() && o.model != "exemplar" && o.model != "auto") {
+    throw InputError(
+        fmt::format("--border: is of an exemplar, and --model {} has none; leave it out, or take "
+                    "--model exemplar",
+                    o.model));
+  }
   if (o.model != "phase" && o.model != "exemplar") return;
   for (const char* name : {"--lobes", "--penalty", "--gap"}) {
     if (job.options.option(name).count() > 0) {
@@ -321,11 +336,33 @@ void say_lobes(const PhotoFit& photo, const PhotoFitArguments& o, const Job& job
   job.say(photo.gaussianity().value().sentence);
 }
 
+// Names a slow change of brightness, which an exemplar repeats in each of its copies.
+void say_uneven_light(const TextureFit& fit, const PhotoFitArguments& o, const Job& job) {
+  constexpr double kWorthSaying = 0.1;
+  const GreyImage photo = fit.luma();
+  const double all = sample_variance(photo.values);
+  const auto share = [&](int degree) {
+    GreyImage rest = photo;
+    remove_trend(rest, degree, TrendModel::kAdded, o.image);
+    return 1.0 - sample_variance(rest.values) / all;
+  };
+  const double plane = share(1), bowl = share(2) - plane;
+  if (o.heights_in_metres || plane + bowl < kWorthSaying) return;
+  job.say(
+      fmt::format("note: {:.0f} % of the photo's variance is {}; --detrend {} takes it out before the fit",
+                  100.0 * (plane + bowl),
+                  plane > bowl ? "a gradient of light, brighter on one side"
+                               : "a vignette, or a light spot in the middle",
+                  plane > bowl ? 1 : 2));
+}
+
 void say_exemplar(const PreparedExemplar& exemplar, const Job& job) {
-  const TextureScore& score = exemplar.scores[static_cast<int>(exemplar.variant)];
-  job.say(fmt::format(
-      "exemplar: {}; a texture of it differs from the photo itself by {:.3f} in values and {:.3f} in filters",
-      variant_word(exemplar.variant), score.values, score.filters));
+  const TextureScore& score = exemplar.score();
+  job.say(
+      fmt::format("exemplar: {}; a texture of it differs from the photo itself by {:.3f} in values, {:.3f} "
+                  "in filters and "
+                  "{:.3f} in direction",
+                  variant_word(exemplar.variant), score.values, score.filters, score.direction));
 }
 
 void say_phases(const TextureFit& fit, const Job& job) {
@@ -359,7 +396,10 @@ void say_result(const TextureFit& fit, const PhotoFitArguments& o, const Job& jo
   if (o.has_gaps) say_gaps(fit, job);
   if (fit.lobes) say_lobes(*fit.lobes, o, job);
   if (fit.model == TextureModel::kPhase) say_phases(fit, job);
-  if (fit.exemplar) say_exemplar(*fit.exemplar, job);
+  if (fit.exemplar) {
+    say_exemplar(*fit.exemplar, job);
+    say_uneven_light(fit, o, job);
+  }
 }
 
 // Returns the spectra where they are wanted.
@@ -394,7 +434,8 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
                                 : read_image(o.image, o.channels == "pca", job.progress("photo"));
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   take_stated_scale(job, photo, o);
-  const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};
+  const TextureFitOptions options{model_named(o.model), variant_named(o.border), photo_options(job, o),
+                                  recipe_options(job, o)};
   if (!report(job.progress("photo"), 0.0, "read")) throw WorkError(o.image + ": stopped; nothing is written");
   flatten(photo.planes, o.image, options.photo);
   take_one_period(o, job, photo.planes);

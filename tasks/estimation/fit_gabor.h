@@ -51,6 +51,7 @@ struct PhotoFitArguments {
   std::string image_sha256;                         // before it was read
   std::string output, report_folder, spectrum_file;  // empty: none
   std::string model = "gabor";
+  std::string border;  // of an exemplar; empty: the nearest
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";

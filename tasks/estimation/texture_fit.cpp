@@ -49,12 +49,15 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
                    TextureFit& fit) {
   const std::uint64_t seed = options.recipe.seed;
   take_whole_part(fit.photo, name);
-  fit.exemplar = fit.photo.size() == 1 ? prepare_exemplar(fit.photo.front(), name, seed, progress)
-                                       : prepare_exemplar(fit.photo, name, seed, progress);
+  fit.exemplar = fit.photo.size() == 1
+                     ? prepare_exemplar(fit.photo.front(), name, seed, progress, options.border)
+                     : prepare_exemplar(fit.photo, name, seed, progress, options.border);
   fit.image = fit.exemplar->layer;
   fit.recipe = exemplar_recipe(*fit.image, options.recipe);
-  const TextureScore& score = fit.exemplar->scores[static_cast<int>(fit.exemplar->variant)];
-  fit.recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
+  const TextureScore& score = fit.exemplar->score();
+  fit.recipe.provenance.achieved = {{"direction_distance", score.direction},
+                                    {"filter_distance", score.filters},
+                                    {"value_distance", score.values}};
 }
 
 // A photo is no one texture where the grey values of its squares differ by this, in standard deviations.
@@ -78,8 +81,10 @@ nlohmann::ordered_json to_json(const ModelChoice& choice) {
 nlohmann::ordered_json to_json(const PreparedExemplar& exemplar) {
   auto scores = nlohmann::ordered_json::object();
   for (const ExemplarVariant variant : kExemplarVariants) {
-    const TextureScore& score = exemplar.scores[static_cast<int>(variant)];
-    scores[std::string(variant_word(variant))] = {{"values", score.values}, {"filters", score.filters}};
+    const auto& score = exemplar.scores[static_cast<int>(variant)];
+    if (!score) continue;
+    scores[std::string(variant_word(variant))] = {
+        {"values", score->values}, {"filters", score->filters}, {"direction", score->direction}};
   }
   return {{"variant", std::string(variant_word(exemplar.variant))}, {"variants", std::move(scores)}};
 }

@@ -17,7 +17,8 @@
 namespace astrolith {
 
 struct TextureFitOptions {
-  std::optional<TextureModel> model;  // none: that of choose_model()
+  std::optional<TextureModel> model;      // none: that of choose_model()
+  std::optional<ExemplarVariant> border;  // of an exemplar; none: the nearest
   PhotoFitOptions photo;
   PhotoRecipeOptions recipe;
 };

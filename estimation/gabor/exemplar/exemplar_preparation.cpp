@@ -49,8 +49,12 @@ GreyImage continued(const GreyImage& photo, ExemplarVariant variant, const Progr
 
 // The height has the deviation of the image, not of the photo: where its periodic component lacks light from
 // one side, its grains are no higher for that.
-ExemplarLayer make_variant_layer(const std::vector<GreyImage>& planes, ExemplarVariant variant,
-                                 const Progress& progress) {
+struct VariantImage {
+  ExemplarLayer layer;
+  GreyImage luma;
+};
+VariantImage make_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant,
+                          const Progress& progress) {
   std::vector<GreyImage> image;
   for (const GreyImage& plane : planes) {
     const double from = static_cast<double>(image.size()), all = static_cast<double>(planes.size()) + 1.0;
@@ -58,13 +62,24 @@ ExemplarLayer make_variant_layer(const std::vector<GreyImage>& planes, ExemplarV
   }
   heed_exemplar(progress, 0.8);
   const bool color = planes.size() == 3;
-  const GreyImage luma = color ? luma_image(image) : image.front();
+  GreyImage luma = color ? luma_image(image) : image.front();
   ExemplarLayer layer;
   layer.pixels = std::make_shared<const ExemplarImage>(color ? colors_in_16_bits(image) : in_16_bits(luma));
   layer.border = variant == ExemplarVariant::kMirrored ? ExemplarBorder::kMirror : ExemplarBorder::kRepeat;
   layer.height_rms = round_to_seven_digits(std::sqrt(sample_variance(luma.values)));
   layer.color = color;
-  return layer;
+  return {std::move(layer), std::move(luma)};
+}
+
+// The image beside its mirror image.
+GreyImage with_mirror_image(const GreyImage& image) {
+  GreyImage both{2 * image.width, image.height, {}};
+  both.values.reserve(2 * image.values.size());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) both.values.push_back(image.at(x, y));
+    for (int x = image.width; x-- > 0;) both.values.push_back(image.at(x, y));
+  }
+  return both;
 }
 
 // The scores are those of the middle of a larger photo.
@@ -72,20 +87,29 @@ constexpr int kMostJudgedSide = 1024;
 
 // `photo` is the grey photo, or the luma of the planes.
 PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const GreyImage& photo,
-                                 const std::string& name, std::uint64_t seed, const Progress& progress) {
+                                 const std::string& name, std::uint64_t seed, const Progress& progress,
+                                 std::optional<ExemplarVariant> only) {
   require_exemplar(photo, name);
   const GreyImage judged = photo.middle(kMostJudgedSide);
+  const int side = std::min(judged.width, judged.height);
+  const OrientedSlopes direction(judged, side);
   PreparedExemplar best;
   for (const ExemplarVariant variant : kExemplarVariants) {
+    if (only && variant != *only) continue;
     const int number = static_cast<int>(variant);
     const Progress part = stretch(progress, number / 3.0, (number + 1) / 3.0);
-    ExemplarLayer layer = make_variant_layer(planes, variant, stretch(part, 0.0, 0.6));
+    auto [layer, luma] = make_variant(planes, variant, stretch(part, 0.0, 0.6));
     heed_exemplar(part, 0.6);
     const GreyImage texture = exemplar_texture_like(layer, judged, seed);
     heed_exemplar(part, 0.8);
     best.scores[number] = texture_score(texture, judged);
-    if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
-      continue;
+    // A texture takes its pieces from all over the continued image, whose slopes are its own in the mean.
+    // Those of one texture would scatter.
+    const GreyImage middle = luma.middle(kMostJudgedSide);
+    const bool mirrors = variant == ExemplarVariant::kMirrored;
+    best.scores[number]->direction =
+        OrientedSlopes(mirrors ? with_mirror_image(middle) : middle, side).difference_from(direction);
+    if (best.layer.pixels && best.scores[number]->sum() >= best.score().sum()) continue;
     best.variant = variant;
     best.layer = std::move(layer);
   }
@@ -156,6 +180,13 @@ std::string_view variant_word(ExemplarVariant variant) {
   return kWords[static_cast<int>(variant)];
 }
 
+std::optional<ExemplarVariant> variant_named(std::string_view word) {
+  for (const ExemplarVariant variant : kExemplarVariants) {
+    if (word == variant_word(variant)) return variant;
+  }
+  return {};
+}
+
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed) {
   const std::vector<float> heights =
       synthesize_exemplar(layer, "exemplar", photo.width, photo.height, {seed, 0, false});
@@ -166,14 +197,15 @@ GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& pho
 }
 
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
-                                  const Progress& progress) {
-  return nearest_variant({photo}, photo, name, seed, progress);
+                                  const Progress& progress, std::optional<ExemplarVariant> only) {
+  return nearest_variant({photo}, photo, name, seed, progress, only);
 }
 
 PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
-                                  std::uint64_t seed, const Progress& progress) {
+                                  std::uint64_t seed, const Progress& progress,
+                                  std::optional<ExemplarVariant> only) {
   require_colors(planes, name);
-  return nearest_variant(planes, luma_image(planes), name, seed, progress);
+  return nearest_variant(planes, luma_image(planes), name, seed, progress, only);
 }
 
 }  // namespace astrolith

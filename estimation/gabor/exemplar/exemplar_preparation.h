@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimation/gabor/exemplar/texture_score.h"
@@ -37,26 +39,32 @@ enum class ExemplarVariant { kPeriodic, kMatched, kMirrored };
 inline constexpr ExemplarVariant kExemplarVariants[] = {ExemplarVariant::kPeriodic, ExemplarVariant::kMatched,
                                                         ExemplarVariant::kMirrored};
 std::string_view variant_word(ExemplarVariant variant);
+// The variant of that name; none for other words.
+std::optional<ExemplarVariant> variant_named(std::string_view word);
 
 struct PreparedExemplar {
   ExemplarVariant variant = ExemplarVariant::kPeriodic;
   ExemplarLayer layer;  // with pixels and border; lengths are pixels, height_rms is the image's deviation
-  // The score of each variant, by number: of a texture against the photo, or its middle 1024 x 1024.
-  TextureScore scores[3];
+  // The score of each variant that was tried, by number: of a texture against the photo, or its middle
+  // 1024 x 1024.
+  std::optional<TextureScore> scores[3];
+  const TextureScore& score() const { return *scores[static_cast<int>(variant)]; }
 };
 
-// Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's
-// name in messages. Throws InputError as require_exemplar() does. Throws WorkError when `progress` asks to
-// stop.
+// Makes an exemplar of a photo by the variant `only`, or else by the one whose textures are nearest to the
+// photo, in their direction too: mirrored at its borders, a photo of which light comes from one side is lit
+// from four. `name` is the photo's name in messages. Throws InputError as require_exemplar() does. Throws
+// WorkError when `progress` asks to stop.
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
-                                  const Progress& progress = {});
+                                  const Progress& progress = {}, std::optional<ExemplarVariant> only = {});
 
 // Prepares a photo in colour alike: red, green and blue of one size, full scale = 1. The layer has the
 // colours and paints. Its height is that of their luma, and the scores are those of the luma. The variant
 // changes each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also as require_colors()
 // does.
 PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
-                                  std::uint64_t seed, const Progress& progress = {});
+                                  std::uint64_t seed, const Progress& progress = {},
+                                  std::optional<ExemplarVariant> only = {});
 
 // A texture of an exemplar layer, in the grey values of the photo that it was made from.
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed);

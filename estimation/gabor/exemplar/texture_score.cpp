@@ -56,9 +56,9 @@ std::array<std::vector<double>, 3> responses(const GreyImage& image, double sigm
   return result;
 }
 
-}  // namespace
+using Distribution = TextureDistributions::Distribution;
 
-TextureDistributions::Distribution TextureDistributions::sorted_distribution(std::vector<double> values) {
+Distribution sorted_distribution(std::vector<double> values) {
   Distribution result{{}, std::sqrt(sample_variance(values))};
   std::sort(values.begin(), values.end());
   for (int q = 0; q < kQuantiles; ++q) {
@@ -70,17 +70,33 @@ TextureDistributions::Distribution TextureDistributions::sorted_distribution(std
   return result;
 }
 
+// The Wasserstein-1 distance is the mean difference of the quantiles, here over the deviation of `b`.
+double distance_over_deviation(const Distribution& a, const Distribution& b) {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < a.quantiles.size(); ++q) sum += std::fabs(a.quantiles[q] - b.quantiles[q]);
+  return sum / kQuantiles / b.deviation;
+}
+
+// The blurs that count for images of this side.
+std::vector<double> blurs(int side) {
+  std::vector<double> sigmas;
+  for (const double sigma : {1.0, 2.0, 4.0, 8.0}) {
+    if (side > 8.0 * sigma) sigmas.push_back(sigma);
+  }
+  return sigmas;
+}
+
+}  // namespace
+
 TextureDistributions::TextureDistributions(const GreyImage& image, int side) {
   distributions_.push_back(sorted_distribution(image.values));
-  for (const double sigma : {1.0, 2.0, 4.0, 8.0}) {
-    if (!(side > 8.0 * sigma)) break;
+  for (const double sigma : blurs(side)) {
     for (std::vector<double>& response : responses(image, sigma)) {
       distributions_.push_back(sorted_distribution(std::move(response)));
     }
   }
 }
 
-// The Wasserstein-1 distance of two distributions is the mean difference of their quantiles.
 TextureScore TextureDistributions::score_against(const TextureDistributions& photo) const {
   constexpr double kNone = 1e-9;  // a response of so little beside the grey values is rounding
   TextureScore score;
@@ -89,12 +105,39 @@ TextureScore TextureDistributions::score_against(const TextureDistributions& pho
     const Distribution &a = distributions_[k], &b = photo.distributions_[k];
     if (!(b.deviation > kNone * photo.distributions_[0].deviation)) continue;
     filters += k > 0;
-    double sum = 0.0;
-    for (std::size_t q = 0; q < a.quantiles.size(); ++q) sum += std::fabs(a.quantiles[q] - b.quantiles[q]);
-    (k == 0 ? score.values : score.filters) += sum / kQuantiles / b.deviation;
+    (k == 0 ? score.values : score.filters) += distance_over_deviation(a, b);
   }
   score.filters /= std::max(1, filters);
   return score;
+}
+
+OrientedSlopes::OrientedSlopes(const GreyImage& image, int side) {
+  for (const double sigma : blurs(side)) {
+    const GreyImage b = blurred_inside(image, sigma);
+    std::vector<double> falling, rising;
+    double xx = 0.0, yy = 0.0, xy = 0.0;
+    for (int y = 1; y + 1 < b.height; ++y) {
+      for (int x = 1; x + 1 < b.width; ++x) {
+        const double along_x = b.at(x + 1, y) - b.at(x - 1, y), along_y = b.at(x, y + 1) - b.at(x, y - 1);
+        xx += along_x * along_x, yy += along_y * along_y, xy += along_x * along_y;
+        falling.push_back(b.at(x + 1, y + 1) - b.at(x - 1, y - 1));
+        rising.push_back(b.at(x + 1, y - 1) - b.at(x - 1, y + 1));
+      }
+    }
+    blurs_.push_back({xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0,
+                      sorted_distribution(std::move(falling)), sorted_distribution(std::move(rising))});
+  }
+}
+
+double OrientedSlopes::difference_from(const OrientedSlopes& photo) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < blurs_.size(); ++k) {
+    const Blur &a = blurs_[k], &b = photo.blurs_[k];
+    sum += std::fabs(a.correlation - b.correlation);
+    if (b.falling.deviation > 0.0) sum += 0.5 * distance_over_deviation(a.falling, b.falling);
+    if (b.rising.deviation > 0.0) sum += 0.5 * distance_over_deviation(a.rising, b.rising);
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(blurs_.size(), 1));
 }
 
 TextureScore texture_score(const GreyImage& texture, const GreyImage& photo) {

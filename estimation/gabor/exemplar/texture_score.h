@@ -12,8 +12,11 @@ namespace astrolith {
 struct TextureScore {
   double values = 0.0;   // of the grey values
   double filters = 0.0;  // of filter responses, the mean over all filters
+  // OrientedSlopes::difference_from(), where it was asked for. A mirror image has the same values and
+  // filters.
+  double direction = 0.0;
 
-  double sum() const { return values + filters; }
+  double sum() const { return values + filters + direction; }
 };
 
 // The distributions by which textures are compared: of grey values, and of filter responses. The filters are
@@ -28,16 +31,36 @@ class TextureDistributions {
   // made with one side.
   TextureScore score_against(const TextureDistributions& photo) const;
 
- private:
   struct Distribution {
     std::vector<double> quantiles;
     double deviation;
   };
-  static Distribution sorted_distribution(std::vector<double> values);
+
+ private:
   std::vector<Distribution> distributions_;  // of the grey values, then of each filter
 };
 
-// Scores a texture against a photo.
+// What tells an image from its mirror image, after each of the same blurs. At 45 degrees a texture has slopes
+// along x and y that are correlated, and of its diagonals one is rougher.
+class OrientedSlopes {
+ public:
+  // As TextureDistributions.
+  OrientedSlopes(const GreyImage& image, int side);
+  // The distances of the slopes along both diagonals, and the difference of the correlation of the slopes
+  // along x and y, each a mean over the blurs. Both were made with one side.
+  double difference_from(const OrientedSlopes& photo) const;
+  // The correlation of the slopes along x and y after the smallest blur; 0 where there is no slope.
+  double correlation() const { return blurs_.empty() ? 0.0 : blurs_.front().correlation; }
+
+ private:
+  struct Blur {
+    double correlation;
+    TextureDistributions::Distribution falling, rising;  // of the slopes along both diagonals
+  };
+  std::vector<Blur> blurs_;
+};
+
+// Scores a texture against a photo, but for its direction.
 TextureScore texture_score(const GreyImage& texture, const GreyImage& photo);
 
 }  // namespace astrolith

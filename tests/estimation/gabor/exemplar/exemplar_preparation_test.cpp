@@ -47,11 +47,39 @@ TEST(TextureScore, IsZeroForTheSameImageAndKnowsShifts) {
 TEST(ExemplarPreparation, TakesTheVariantWithTheBestScore) {
   const GreyImage photo = discs(128);
   const PreparedExemplar prepared = prepare_exemplar(photo, "p", 1);
-  for (const TextureScore& score : prepared.scores) {
-    EXPECT_LE(prepared.scores[static_cast<int>(prepared.variant)].sum(), score.sum());
-  }
+  for (const auto& score : prepared.scores) EXPECT_LE(prepared.score().sum(), score.value().sum());
   EXPECT_EQ(prepared.layer.border == ExemplarBorder::kMirror, prepared.variant == ExemplarVariant::kMirrored);
-  EXPECT_LT(prepared.scores[static_cast<int>(prepared.variant)].sum(), 0.25);
+  EXPECT_LT(prepared.score().values + prepared.score().filters, 0.25);
+  const PreparedExemplar matched = prepare_exemplar(photo, "p", 1, {}, ExemplarVariant::kMatched);
+  EXPECT_EQ(matched.variant, ExemplarVariant::kMatched);
+  EXPECT_FALSE(matched.scores[0] || matched.scores[2]);
+  EXPECT_EQ(matched.score().sum(), prepared.scores[1]->sum());
+}
+
+// Bands at a slant under light that falls off: mirrored they would run both ways, with the same distributions
+// of the slopes along x and y.
+TEST(ExemplarPreparation, KeepsTheDirectionOfAPhoto) {
+  GreyImage bands{128, 128, {}};
+  CounterRandom random(5);
+  std::vector<double> phases;
+  for (int k = 0; k < 40; ++k) phases.push_back(random.uniform(0, 6.28));
+  for (int y = 0; y < bands.height; ++y) {
+    for (int x = 0; x < bands.width; ++x) {
+      double sum = 0.003 * x;
+      for (int k = 0; k < 40; ++k)
+        sum += 0.1 *
+               std::sin((x - y) * 0.02 * (k + 3) + (x + y) * 0.002 * k + phases[static_cast<std::size_t>(k)]);
+      bands.values.push_back(sum);
+    }
+  }
+  const double photo = OrientedSlopes(bands, 128).correlation();
+  EXPECT_LT(photo, -0.7);
+  const auto correlation_of = [&](const PreparedExemplar& prepared) {
+    return OrientedSlopes(exemplar_texture_like(prepared.layer, bands, 2), 128).correlation();
+  };
+  EXPECT_NEAR(correlation_of(prepare_exemplar(bands, "p", 1)) / photo, 1.0, 0.2);
+  const PreparedExemplar mirrored = prepare_exemplar(bands, "p", 1, {}, ExemplarVariant::kMirrored);
+  EXPECT_GT(mirrored.score().direction, 0.5);
 }
 
 // The image has the photo's colours, and its luma is the height.
