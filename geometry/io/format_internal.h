@@ -32,8 +32,8 @@ struct MeshFile {
   [[noreturn]] void fail(std::string_view place, std::string_view what, std::string_view remedy) const;
 };
 
-// Reads the whole file, and unpacks Zstandard, to at most 100 times the file's size. Throws InputError when
-// it is missing, empty, a folder, or not a plain file.
+// Reads the whole file, and unpacks Zstandard, to at most 100 times the file's size. Throws
+// InputError when it is missing, empty, a folder, or not a plain file.
 MeshFile load_mesh_file(const std::filesystem::path& path);
 
 // At most 40 characters of a piece of a file, in quotes, for a one-line message. Characters that are not
@@ -81,6 +81,10 @@ TriangleMesh read_off(const MeshFile& file);
 TriangleMesh read_plate(const MeshFile& file);
 TriangleMesh read_icq(const MeshFile& file);
 TriangleMesh read_bmf(const MeshFile& file);
+TriangleMesh read_glb(const MeshFile& file);
+bool is_glb(const MeshFile& file);
+TriangleMesh read_dsk(const MeshFile& file);
+bool is_dsk(const MeshFile& file);
 // A table of latitude, longitude and radius.
 TriangleMesh read_grid_table(const MeshFile& file);
 bool is_grid_table(const MeshFile& file);

@@ -21,10 +21,16 @@ constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;          // tar
 
 Json vector_json(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
 
+// A glTF is in metres. Positions are metres themselves, because many readers pass over the scale of a node.
+// Lengths of an unknown unit stay as they are.
+std::string stored_unit(const MeshFileInfo& info) {
+  return has_known_length(info.length_unit) ? "m" : info.length_unit;
+}
+
 // The smallest and largest coordinates as stored, which the format demands.
-std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
+std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh, double scale) {
   const Box box = mesh.bounds();
-  return {to_float(box.min), to_float(box.max)};
+  return {to_float(scale * box.min), to_float(scale * box.max)};
 }
 
 // The vertices that a level stores: with a skin, its textured vertices.
@@ -49,7 +55,8 @@ std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
 class GlbDocument {
  public:
-  GlbDocument(std::span<const MeshLevel> levels, std::span<const double> coverage, const MeshFileInfo& info) {
+  GlbDocument(std::span<const MeshLevel> levels, std::span<const double> coverage, const MeshFileInfo& info)
+      : scale_(metres_per_unit(info.length_unit)) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
@@ -57,7 +64,7 @@ class GlbDocument {
     document_["materials"] = Json::array();
     for (const MeshLevel& level : levels) {
       const std::size_t number = document_["nodes"].size();
-      document_["nodes"].push_back(node(info, number));
+      document_["nodes"].push_back(node(number));
       if (number == 0 || has_maps(level)) add_material(level, number);
       add_arrays(level, number);
     }
@@ -70,20 +77,20 @@ class GlbDocument {
   std::uint64_t num_bytes() const { return num_bytes_; }
 
  private:
-  static Json extras(const MeshFileInfo& info) {
-    Json extras = {{"length_unit", info.length_unit}, {"frame", info.frame}, {"comment", info.comment}};
-    if (info.origin) extras["origin"] = {info.origin->x, info.origin->y, info.origin->z};
+  Json extras(const MeshFileInfo& info) const {
+    Json extras = {{"length_unit", stored_unit(info)}, {"frame", info.frame}, {"comment", info.comment}};
+    if (info.origin) {
+      const Vec3d origin = scale_ * *info.origin;
+      extras["origin"] = {origin.x, origin.y, origin.z};
+      extras["whole_body"] = info.whole_body;
+    }
     return extras;
   }
 
   // The node turns the body about x, so that +z up becomes +y up. Quaternions are (x y z w).
-  static Json node(const MeshFileInfo& info, std::size_t level) {
+  static Json node(std::size_t level) {
     constexpr double kHalf = 0.70710678118654757;
-    const double scale = metres_per_unit(info.length_unit);
-    Json result = {
-        {"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
-    result["scale"] = {scale, scale, scale};
-    return result;
+    return {{"mesh", level}, {"name", level_name("body", level)}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
   }
 
   // The first node stands for all levels (MSFT_lod): engines show the others below these shares of the
@@ -153,7 +160,7 @@ class GlbDocument {
   void add_arrays(const MeshLevel& level, std::size_t number) {
     const TriangleMesh& mesh = *level.mesh;
     const std::uint64_t vertices = num_stored(level);
-    const auto [low, high] = float_bounds(mesh);
+    const auto [low, high] = float_bounds(mesh, scale_);
     Json attributes;
     attributes["POSITION"] = add_array(vertices, kArrayBuffer, kFloat, "VEC3", 12);
     document_["accessors"].back()["min"] = vector_json(low);
@@ -186,6 +193,7 @@ class GlbDocument {
     return number;
   }
 
+  double scale_;  // metres of the unit of the mesh
   Json document_;
   std::size_t num_images_ = 0;   // whose bytes have a place
   std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
@@ -213,10 +221,9 @@ void append_all(BufferedOutput& buffer, const std::vector<Value>& values, const 
     buffer.append_value(stored(values[vertex]));
 }
 
-void append_arrays(BufferedOutput& buffer, const MeshLevel& level) {
-  const auto narrowed = [](const Vec3d& v) { return to_float(v); };
-  append_all(buffer, level.mesh->vertices, level, narrowed);
-  append_all(buffer, level.mesh->normals, level, narrowed);
+void append_arrays(BufferedOutput& buffer, const MeshLevel& level, double scale) {
+  append_all(buffer, level.mesh->vertices, level, [scale](const Vec3d& v) { return to_float(scale * v); });
+  append_all(buffer, level.mesh->normals, level, [](const Vec3d& v) { return to_float(v); });
   if (has_tangents(level)) {
     for (const VertexTangent& tangent : level.skin->tangents) buffer.append_value(tangent);
   }
@@ -268,7 +275,8 @@ void write_glb_levels(std::span<const MeshLevel> levels, std::span<const double>
   append_chunk_header(buffer, json.size(), "JSON");
   buffer.append(json);
   append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
-  for (const MeshLevel& level : levels) append_arrays(buffer, level);
+  const double scale = metres_per_unit(info.length_unit);
+  for (const MeshLevel& level : levels) append_arrays(buffer, level, scale);
   for (const MeshLevel& level : levels) append_images(buffer, level);
   buffer.flush();
   out.commit();

@@ -60,8 +60,8 @@ std::string read_mesh_words();
 bool has_mesh_extension(const std::filesystem::path& file);
 bool has_readable_extension(const std::filesystem::path& file);
 
-// The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for "Bennu.PLY"
-// and for "bennu.ply.zst".
+// The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for
+// "Bennu.PLY" and for "bennu.ply.zst".
 std::string mesh_extension(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -28,6 +28,8 @@ namespace astrolith {
 // east
 //   unless a name or a label says west
 // - .bmf: bodies of OpenUniverse, in kilometres; welded, with one winding of each triangle
+// - .glb: the triangles of the scene of a glTF, in metres with +z up; welded; without parts that only collide
+// - .bds: the plates of a SPICE shape kernel, in kilometres
 // For any other extension the content decides. Polygons become triangles: fans around their first corners, or
 // ears where a fan would leave a polygon that is not convex. Lengths stay in the file's unit.
 //
@@ -73,7 +75,7 @@ struct MeshFileInfo {
 };
 
 // Writes .ply (binary little endian, float32; .ply.zst is compressed), .obj (text, exact), .stl (binary,
-// float32) or .glb (glTF 2.0, float32; a node turns +z up into +y up and scales m, km, cm, mm to metres),
+// float32) or .glb (glTF 2.0, float32, metres where the unit's length is known; a node turns +z up into +y),
 // .tab (PDS plate model, text, exact) or .icq (Gaskell's quadrilaterals, as many as half the triangles; for
 // bodies with one surface along each direction from their centre of mass, others give InputError). Normals
 // are written where the mesh and the format have them, colours of vertices into .ply (sRGB bytes) and .glb
@@ -81,6 +83,9 @@ struct MeshFileInfo {
 // Throws WorkError for a mesh without triangles, with indices out of range, or with coordinates that float32
 // cannot hold. Formats that state no origin get a whole body's coordinates in the frame.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+
+// The material beside an .obj whose skin has maps: write_mesh() writes it, too. It names the maps' images.
+std::filesystem::path material_file(std::filesystem::path obj);
 
 // Writes the levels of detail of one body into a .glb, the finest first: an engine shows level k + 1 where
 // the body takes less than coverage[k] of the screen's height (MSFT_lod). `coverage` has a number in 0 .. 1

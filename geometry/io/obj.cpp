@@ -1,5 +1,7 @@
 // Wavefront OBJ. The shape of a body needs the lines "v" and "f" only; all others are ignored. PDS plate
 // models in the style "v x y z", "f a b c" can be read as OBJ too.
+#include <algorithm>
+
 #include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
@@ -46,7 +48,24 @@ std::string to_line(const TexturePoint& uv) {
   return line + "\n";
 }
 
+// The material of a mesh with maps, for programs that know the classic words (Wavefront, Alias) and those
+// that know "norm". "map_Bump" is a map of normals in Blender, Godot and Unity; three.js prefers "norm".
+std::string material_text(const std::vector<SkinMap>& maps) {
+  const auto is_color = [](const SkinMap& map) { return map.use == SkinMap::Use::kBaseColor; };
+  const std::string grey = std::any_of(maps.begin(), maps.end(), is_color) ? "1 1 1" : "0.5 0.5 0.5";
+  std::string text = "newmtl regolith\nKa 1 1 1\nKd " + grey + "\nKs 0 0 0\nd 1\nillum 1\nPr 1\n";
+  for (const SkinMap& map : maps) {
+    const std::string image = " " + map.name + ".png\n";
+    if (map.use == SkinMap::Use::kBaseColor) text += "map_Kd" + image;
+    if (map.use == SkinMap::Use::kOcclusion) text += "map_Ka" + image;
+    if (map.use == SkinMap::Use::kNormal) text += "map_Bump" + image + "norm" + image;
+  }
+  return text;
+}
+
 }  // namespace
+
+std::filesystem::path material_file(std::filesystem::path obj) { return obj.replace_extension(".mtl"); }
 
 TriangleMesh read_obj(const MeshFile& file) {
   TriangleMesh mesh;
@@ -82,6 +101,10 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   const TextureCoordinates* const texture = info.skin ? &info.skin->coordinates : nullptr;
   if (texture != nullptr) {
     for (const TexturePoint& uv : texture->uv) buffer.append(to_line(uv));
+  }
+  if (info.skin && !info.skin->maps.empty()) {
+    write_file(material_file(file), material_text(info.skin->maps));
+    buffer.append("mtllib " + material_file(file).filename().string() + "\nusemtl regolith\n");
   }
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     buffer.append(to_line(mesh.triangles[f], texture != nullptr ? &texture->triangles[f] : nullptr,

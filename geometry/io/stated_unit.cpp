@@ -108,10 +108,22 @@ std::string line_unit(std::string_view line) {
   return columns && is_length_unit(columns->unit) ? columns->unit : std::string();
 }
 
+// The unit of a format that has one: metres of a glTF, unless its writer, this program, states another of
+// unknown length; kilometres of a SPICE kernel.
+std::string unit_of_format(std::string_view start) {
+  if (start.starts_with("DAS/DSK")) return "km";
+  if (!start.starts_with("glTF")) return {};
+  constexpr std::string_view kOwn = "\"length_unit\":\"";
+  const std::size_t at = start.substr(0, kMostHeader).find(kOwn);
+  const std::string_view own = at == start.npos ? "" : first_letters(start.substr(at + kOwn.size()));
+  return own.empty() || own.size() > kLongestUnit ? "m" : std::string(own);
+}
+
 }  // namespace
 
 StatedUnit stated_unit(const std::filesystem::path& file) {
   const std::string start = read_start(file);
+  if (std::string unit = unit_of_format(start); !unit.empty()) return {std::move(unit), {}};
   if (begins_pds3_label(start)) return {unit_in_label(start), {}};
   if (mesh_extension(file) == ".stl") {
     constexpr std::size_t kStlHeader = 80;

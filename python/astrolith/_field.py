@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 import numpy.typing as npt
 
@@ -61,9 +63,32 @@ class Field:
         """
         return self._field.value(self._local(points), _options.threads(threads), progress)
 
-    def gradient(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.float64]:
-        """Evaluate the gradient of F, (n, 3) float64 without a unit; it points inwards. As :meth:`value` otherwise."""
-        return self._field.gradient(self._local(points), _options.threads(threads), progress)
+    def gradient(
+        self,
+        points: npt.ArrayLike,
+        *,
+        step: Optional[float] = None,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> npt.NDArray[np.float64]:
+        """Evaluate the gradient of F, (n, 3) float64 without a unit; it points inwards. As :meth:`value` otherwise.
+
+        Parameters
+        ----------
+        step
+            The step of central differences along each axis, length units: a longer one passes over finer layers. None:
+            that of :attr:`gradient_step`, and the analytic gradient of a bare body.
+        """
+        if step is None:
+            return self._field.gradient(self._local(points), _options.threads(threads), progress)
+        length = _arrays.positive(step, "step", 1e30)
+        rows = self._local(points)
+        found = np.empty(rows.shape, np.float64)
+        for axis, shift in enumerate(length * np.eye(3)):
+            ahead, behind = (self._field.value(np.ascontiguousarray(rows + side * shift), _options.threads(threads), progress)
+                             for side in (1.0, -1.0))  # fmt: skip
+            found[:, axis] = (ahead - behind) / (2.0 * length)
+        return found
 
     def inside(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.bool_]:
         """Return (n) bool: whether F > 0. As :meth:`value` otherwise."""

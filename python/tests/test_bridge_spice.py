@@ -96,6 +96,27 @@ def test_rays_of_cspice_meet_the_written_plates_of_two_segments(site, tmp_path):
         assert np.abs(np.array(points) - meets)[found].max() <= 1e-9 * radius
 
 
+def test_what_cspice_wrote_is_read(site, tmp_path):
+    body, patch = site
+    bridges.write_dsk([body, patch], tmp_path / "two.bds", body=BODY, frame="J2000")
+    read = astrolith.read_mesh(tmp_path / "two.bds")
+    assert read.length_unit == "km" and len(read.faces) == len(body.faces) + len(patch.faces)
+    expected = np.concatenate([body.vertices.astype(float), patch.vertices + np.array(patch.origin)]) / 1000
+    np.testing.assert_allclose(read.vertices, expected, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("codes", [(920065803, 120065803), (920000022, 120000022), (920001862, 120001862), (120065803, 120000022)])
+def test_pairs_of_the_new_numbering_have_frames_of_their_own(site, tmp_path, codes):
+    body, _ = site
+    frames = set()
+    for code in codes:
+        kernels = bridges.write_kernels(body, tmp_path, f"Body{code}", body=code, period=10.0)
+        spice.furnsh(kernels.fk)
+        frames.add(spice.namfrm(f"BODY{code}_FIXED"))
+        assert spice.cidfrm(code)[1] == f"BODY{code}_FIXED"
+    assert len(frames) == 2 and all(1_400_000 <= frame <= 2_000_000 for frame in frames)
+
+
 def test_a_given_unit_wins_over_what_a_file_states(site, tmp_path):
     body, file = site[0], tmp_path / "body.ply"
     astrolith.write_mesh(body, file)

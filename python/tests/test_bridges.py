@@ -55,6 +55,23 @@ def test_open3d_there_and_back(ball):
     assert same(bridges.from_open3d(made), ball)
 
 
+def test_what_is_no_mesh_of_triangles_is_a_value_error():
+    for package, call in (
+        ("pyvista", lambda p: bridges.from_pyvista(p.ImageData(dimensions=(3, 3, 3)))),
+        ("pyvista", lambda p: bridges.from_pyvista(p.PolyData(np.eye(3)))),
+        ("pyvista", lambda p: bridges.from_pyvista("rock.vtp")),
+        ("open3d", lambda o: bridges.from_open3d(o.geometry.PointCloud())),
+        ("trimesh", lambda t: bridges.from_trimesh(t.Scene())),
+        ("trimesh", lambda t: bridges.from_trimesh(t.PointCloud(np.eye(3)))),
+    ):
+        try:
+            module = __import__(package)
+        except ImportError:
+            continue
+        with pytest.raises(ValueError, match="^mesh: "):
+            call(module)
+
+
 def test_bodies_are_the_same_whenever_they_are_made():
     bodies = bridges.Bodies([BALL, ROUGH], seeds=[3, 4, 5], resolution=16)
     assert len(bodies) == 6 and [(item["recipe"], item["seed"]) for item in bodies][2:4] == [(0, 5), (1, 3)]

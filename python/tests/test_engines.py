@@ -108,11 +108,37 @@ def test_godot_has_axes_units_and_maps(rock, tmp_path):
     assert thing["faces"] == rock[1].triangles and thing["normal"] == thing["occlusion"] == 256
 
 
-def test_trimesh_and_pygltflib_read_it(rock):
+def test_bare_geometry_is_in_metres(rock):
+    """Readers that pass over nodes find metres, in the body's frame."""
+    box = np.ptp(astrolith.mesh(RECIPE, resolution=32).vertices, axis=0) * 1000.0
+    found = {}
     trimesh = pytest.importorskip("trimesh")
     loaded = trimesh.load(rock[0])
     names = sorted(loaded.geometry)
     assert names[0].startswith("body")
+    found["trimesh"] = np.ptp(loaded.geometry[names[0]].vertices, axis=0)
+    document, binary = glb_parts(rock[0])
+    assert "scale" not in document["nodes"][0] and document["asset"]["extras"]["length_unit"] == "m"
+    view = document["bufferViews"][document["accessors"][0]["bufferView"]]
+    array = np.frombuffer(binary[view["byteOffset"] :][: view["byteLength"]], np.float32).reshape(-1, 3)
+    found["numpy"] = np.ptp(array, axis=0)
+    try:
+        import pyvista  # VTK's reader takes nodes along
+
+        found["vtk"] = np.ptp(np.array(pyvista.read(rock[0]).combine().points), axis=0)[[0, 2, 1]]
+    except ImportError:
+        pass
+    for reader, size in found.items():
+        np.testing.assert_allclose(size, box, rtol=1e-5, err_msg=reader)
+
+
+def glb_parts(file):
+    data = file.read_bytes()
+    length = int.from_bytes(data[12:16], "little")
+    return json.loads(data[20 : 20 + length]), data[28 + length :]
+
+
+def test_pygltflib_reads_it(rock):
     pygltflib = pytest.importorskip("pygltflib")
     document = pygltflib.GLTF2().load(str(rock[0]))
     assert [image.name for image in document.images] == ["rock_normal", "rock_occlusion", "rock_lod1_normal", "rock_lod1_occlusion"]
@@ -133,6 +159,100 @@ def test_usd_is_valid_and_has_levels_as_variants(rock, tmp_path):
     validation = pytest.importorskip("pxr.UsdValidation")
     context = validation.ValidationContext(validation.ValidationRegistry().GetOrLoadAllValidators())
     assert not context.Validate(stage)
+
+
+def test_usd_is_a_rigid_body(rock, tmp_path):
+    usd = pytest.importorskip("pxr.Usd")
+    pytest.importorskip("scipy")
+    from pxr import Gf, UsdGeom, UsdPhysics
+
+    (packed,) = bridges.write_usd(rock[0], tmp_path / "rock.usdz", density=2000.0)
+    assert [path.name for path in tmp_path.iterdir()] == ["rock.usdz"]
+    stage = usd.Stage.Open(packed)
+    root = stage.GetDefaultPrim()
+    assert root.HasAPI(UsdPhysics.RigidBodyAPI)
+    body = astrolith.gravity(astrolith.mesh(RECIPE, resolution=32), 2000.0).figures.body
+    mass = UsdPhysics.MassAPI(root)
+    assert mass.GetMassAttr().Get() == pytest.approx(body.mass_kg, rel=1e-5)
+    np.testing.assert_allclose(mass.GetCenterOfMassAttr().Get(), body.center_of_mass_m, rtol=1e-4, atol=1e-2)
+    turn = np.array(Gf.Matrix3d(Gf.Rotation(Gf.Quatd(mass.GetPrincipalAxesAttr().Get()))))  # rows are axes
+    inertia = turn.T @ np.diag(mass.GetDiagonalInertiaAttr().Get()) @ turn
+    np.testing.assert_allclose(inertia, body.inertia_kg_m2, atol=1e-4 * np.abs(body.inertia_kg_m2).max())
+    part = stage.GetPrimAtPath("/body/collision/part0")
+    assert part.HasAPI(UsdPhysics.CollisionAPI)
+    assert UsdPhysics.MeshCollisionAPI(part).GetApproximationAttr().Get() == "convexHull"
+    assert len(UsdGeom.Mesh(part).GetPointsAttr().Get()) <= 64
+    with pytest.raises(ValueError, match="^parts: "):
+        bridges.write_usd(rock[0], tmp_path / "a.usda", parts=[bridges.hull(ball())])
+
+
+def ball():
+    return astrolith.mesh({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}},
+                          resolution=16)  # fmt: skip
+
+
+@pytest.mark.parametrize("most", [8, 20, 64, 255])
+def test_a_hull_encloses_the_body_and_keeps_its_limit(most):
+    spatial = pytest.importorskip("scipy.spatial")
+    body = astrolith.mesh(RECIPE, resolution=48)
+    made = bridges.hull(body, most)
+    assert 4 <= len(made.vertices) <= most
+    planes = spatial.ConvexHull(made.vertices).equations
+    beyond = planes[:, :3] @ body.vertices.T.astype(float) + planes[:, 3:]
+    assert beyond.max() <= 0.0
+    # Each face touches the body, so that the body rests where its hull does.
+    assert beyond.max(axis=1).min() > -2e-6 * np.ptp(body.vertices)
+    exact = spatial.ConvexHull(body.vertices).volume
+    assert exact < made.volume < {8: 2.2, 20: 1.6, 64: 1.12, 255: 1.02}[most] * exact
+
+
+def test_convex_parts_go_into_a_glb_by_the_names_of_engines(rock, tmp_path):
+    pytest.importorskip("scipy")
+    trimesh = pytest.importorskip("trimesh")
+    for engine, name in (("godot", "body_part0-convcolonly"), ("unreal", "UCX_body_00")):
+        file = tmp_path / f"{engine}.glb"
+        assert bridges.write_collision(rock[0], file, engine=engine) == str(file)
+        document, _ = glb_parts(file)
+        assert [node["name"] for node in document["nodes"]] == ["body", "body_lod1", name]
+        assert document["scenes"][0]["nodes"] == [0, 2]
+        loaded = trimesh.load(file)
+        part = loaded.geometry[next(key for key in loaded.geometry if key.startswith(name))]
+        body = bridges._glb.read_levels(file)
+        assert [level.name for level in body] == ["body", "body_lod1"]  # parts are not seen
+        hull = bridges.hull(astrolith.Mesh(body[0].vertices, body[0].faces, length_unit="m"))
+        np.testing.assert_allclose(part.bounds, trimesh.Trimesh(hull.vertices, hull.faces).bounds, rtol=1e-6)
+    with pytest.raises(ValueError, match="^engine: "):
+        bridges.write_collision(rock[0], tmp_path / "b.glb", engine="unity")
+    with pytest.raises(ValueError, match="also the file that is read"):
+        bridges.write_collision(tmp_path / "godot.glb", tmp_path / "godot.glb", engine="godot")
+
+
+def test_a_rock_rests_on_its_hull_in_mujoco(tmp_path):
+    """Dropped onto a floor, the seen surface ends at most .5 % of its length above it, and never below."""
+    mujoco = pytest.importorskip("mujoco")
+    pytest.importorskip("scipy")
+    body = astrolith.mesh({**RECIPE, "length_unit": "m"}, resolution=32)
+    bridges.write_model(tmp_path / "rock.xml", body, 2000.0)
+    floor = '<worldbody><geom type="plane" size="50 50 1" pos="0 0 -4"/></worldbody>'
+    (tmp_path / "scene.xml").write_text(f'<mujoco><include file="rock.xml"/>{floor}</mujoco>')
+    loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
+    state = mujoco.MjData(loaded)
+    while state.time < 12.0:
+        mujoco.mj_step(loaded, state)
+    seen = state.body("rock")
+    gap = (body.vertices @ seen.xmat.reshape(3, 3).T + seen.xpos)[:, 2].min() + 4.0
+    length = np.ptp(body.vertices, axis=0).max()
+    assert 0.0 <= gap <= 0.005 * length
+
+
+def test_two_models_go_into_one_scene_of_mujoco(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    pytest.importorskip("scipy")
+    body = astrolith.mesh(RECIPE, resolution=16)
+    for name in ("first", "second"):
+        bridges.write_model(tmp_path / f"{name}.xml", body, 2000.0)
+    (tmp_path / "scene.xml").write_text('<mujoco><include file="first.xml"/><include file="second.xml"/></mujoco>')
+    assert mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml")).nbody == 3  # with the world
 
 
 def test_a_model_has_mass_and_inertia_of_gravity(tmp_path):

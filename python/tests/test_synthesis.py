@@ -27,6 +27,12 @@ def test_the_field_of_a_ball_is_the_distance_from_its_surface(ball):
     assert abs(values[1]) < 1e-6
     assert field.inside(points).tolist() == [True, bool(values[1] > 0), False, True]
     np.testing.assert_allclose(field.gradient(points[2:]), [[0, 0, -1], [0, 0, 1]], atol=0.06)
+    by_step = field.gradient(points[2:], step=0.5)
+    ahead, behind = (field.value(points[2:] + [0, 0, side * 0.5]) for side in (1, -1))
+    np.testing.assert_array_equal(by_step[:, 2], ahead - behind)
+    np.testing.assert_allclose(by_step[:, :2], 0.0, atol=1e-6)
+    with pytest.raises(ValueError, match="^step: "):
+        field.gradient(points, step=0.0)
     assert (field.bounds[0] <= [-1, -2, -2]).all() and (field.bounds[1] >= [3, 2, 2]).all()
     assert field.left_out == []
 

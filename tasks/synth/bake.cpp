@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/atlas/texture_atlas.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
@@ -17,6 +18,7 @@
 #include "synthesis/mesh/sample_grid.h"
 #include "synthesis/picture/image_file.h"
 #include "tasks/job/output_names.h"
+#include "tasks/synth/detail_levels.h"
 
 namespace astrolith {
 namespace {
@@ -111,9 +113,13 @@ std::optional<SkinMap::Use> find_map_use(const std::string& word) {
   return std::nullopt;
 }
 
+bool has_material_file(const fs::path& mesh) { return mesh_extension(mesh) == ".obj"; }
+
 void add_maps(Job& job, const fs::path& mesh, std::size_t level, const BakedMaps& maps, MeshSkin& skin) {
   nlohmann::ordered_json figures = map_figures(maps);
   auto files = nlohmann::ordered_json::object();
+  if (has_material_file(mesh))
+    files["material"] = material_file(level_file(mesh, static_cast<int>(level))).filename().string();
   for (EncodedMap& map : encoded_maps(maps)) {
     const fs::path file = map_file(mesh, level, map.word);
     write_file(file, map.png);
@@ -138,6 +144,7 @@ std::vector<fs::path> map_files(const fs::path& mesh, const MeshSinks& sinks) {
   std::vector<fs::path> files;
   for (int level = 0; sinks.bake > 0 && level < sinks.levels; ++level) {
     for (const char* word : kMapWords) files.push_back(map_file(mesh, static_cast<std::size_t>(level), word));
+    if (has_material_file(mesh)) files.push_back(material_file(level_file(mesh, level)));
   }
   return files;
 }

@@ -6,7 +6,7 @@ Nothing of these packages is loaded before a function needs it. Each is an optio
 
 from __future__ import annotations
 
-from astrolith.bridges.collision import convex_parts, hull, write_model
+from astrolith.bridges.collision import convex_parts, hull, write_collision, write_model
 from astrolith.bridges.datasets import Bodies, torch_dataset
 from astrolith.bridges.finished_set import FinishedSet
 from astrolith.bridges.geo import to_xarray, write_geotiff
@@ -35,6 +35,7 @@ __all__ = [
     "to_trimesh",
     "to_xarray",
     "torch_dataset",
+    "write_collision",
     "write_dsk",
     "write_geotiff",
     "write_kernels",

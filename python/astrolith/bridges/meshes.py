@@ -30,6 +30,12 @@ def _normals(array: Any) -> Optional[npt.NDArray[np.float64]]:
     return None if array is None or len(array) == 0 else np.ascontiguousarray(array, np.float64)
 
 
+def _require(mesh: Any, names: tuple[str, ...], kind: str, remedy: str) -> None:
+    """Raises ValueError for an object that lacks what a function takes of it."""
+    if not all(hasattr(mesh, name) for name in names):
+        raise ValueError(f"mesh: is {type(mesh).__name__}, and no {kind}; {remedy}")
+
+
 def to_trimesh(mesh: MeshLike) -> Any:
     """Make a ``trimesh.Trimesh`` of a mesh.
 
@@ -57,8 +63,10 @@ def to_trimesh(mesh: MeshLike) -> Any:
 def from_trimesh(mesh: Any) -> Mesh:
     """Make a :class:`astrolith.Mesh` of a ``trimesh.Trimesh``.
 
-    Its unit is kept; "meters" become "m". Normals are kept where they were given or have been computed.
+    Its unit is kept; "meters" become "m". Normals are kept where they were given or have been computed. ValueError for
+    what is no such mesh.
     """
+    _require(mesh, ("vertices", "faces", "vertex_normals"), "trimesh.Trimesh", "of a scene take scene.to_mesh()")
     arrays = arrays_of((mesh.vertices, mesh.faces), "mesh")
     return Mesh(
         arrays.vertices,
@@ -101,7 +109,13 @@ def to_pyvista(mesh: MeshLike, values: Optional[Mapping[str, npt.ArrayLike]] = N
 
 
 def from_pyvista(mesh: Any) -> Mesh:
-    """Make a :class:`astrolith.Mesh` of a ``pyvista.PolyData``. Its polygons are cut into triangles."""
+    """Make a :class:`astrolith.Mesh` of a ``pyvista.PolyData``. Its polygons are cut into triangles.
+
+    ValueError for a grid, and for a mesh without polygons.
+    """
+    _require(mesh, ("triangulate", "faces", "points"), "pyvista.PolyData", "of a grid take mesh.extract_surface()")
+    if len(mesh.faces) == 0:
+        raise ValueError("mesh: has no polygons; points alone are no surface")
     triangles = mesh.triangulate()
     arrays = arrays_of((triangles.points, triangles.faces.reshape(-1, 4)[:, 1:]), "mesh")
     return Mesh(arrays.vertices, arrays.faces, _normals(triangles.point_data.get("Normals")))
@@ -127,6 +141,8 @@ def to_open3d(mesh: MeshLike) -> Any:
 
 
 def from_open3d(mesh: Any) -> Mesh:
-    """Make a :class:`astrolith.Mesh` of an ``open3d.geometry.TriangleMesh``."""
+    """Make a :class:`astrolith.Mesh` of an ``open3d.geometry.TriangleMesh``. ValueError for points and other kinds."""
+    _require(mesh, ("vertices", "triangles", "vertex_normals"), "open3d.geometry.TriangleMesh",
+             "of points make a mesh first, such as by create_from_point_cloud_poisson()")  # fmt: skip
     arrays = arrays_of((np.array(mesh.vertices), np.array(mesh.triangles)), "mesh")
     return Mesh(arrays.vertices, arrays.faces, _normals(np.array(mesh.vertex_normals)))

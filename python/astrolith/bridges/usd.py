@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+import tempfile
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
 from astrolith import _arrays
 from astrolith._arrays import PathLike
+from astrolith._gravity import gravity
+from astrolith._mesh import Mesh, MeshLike, unit_of
+from astrolith._units import METRES
 from astrolith.bridges._glb import Level, read_levels
 from astrolith.bridges._optional import required
+from astrolith.bridges.collision import hull, in_metres
 
 _UNCOLORED = 0.5  # the base colour of a body that no layer paints
 
@@ -85,7 +90,37 @@ def _mesh(pxr: Any, stage: Any, path: str, level: Level) -> Any:
     return mesh
 
 
-def write_usd(glb: PathLike, file: PathLike) -> list[str]:
+def _collides(pxr: Any, stage: Any, level: Level, density: float, parts: Sequence[MeshLike]) -> None:
+    """Makes the root a rigid body with mass, centre and inertia of uniform density, which bumps by its parts."""
+    physics, gf = pxr.UsdPhysics, pxr.Gf
+    root = stage.GetDefaultPrim()
+    vertices, numbers = np.unique(level.vertices, axis=0, return_inverse=True)  # charts split the vertices
+    whole = Mesh(vertices, numbers.reshape(-1)[level.faces].astype(np.uint32), length_unit="m")
+    body = gravity(whole, density, degree=0, sample=0).figures.body
+    moments, axes = np.linalg.eigh(np.array(body.inertia_kg_m2, float))
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 2] *= -1.0
+    matrix = gf.Matrix3d(*axes.T.ravel().tolist())  # rows, as USD multiplies from the left
+    turn = matrix.ExtractRotation().GetQuat()
+    physics.RigidBodyAPI.Apply(root)
+    mass = physics.MassAPI.Apply(root)
+    mass.CreateMassAttr(float(body.mass_kg))
+    mass.CreateCenterOfMassAttr(gf.Vec3f(*[float(c) for c in body.center_of_mass_m]))
+    mass.CreateDiagonalInertiaAttr(gf.Vec3f(*[float(m) for m in moments]))
+    mass.CreatePrincipalAxesAttr(gf.Quatf(turn))
+    pxr.UsdGeom.Scope.Define(stage, "/body/collision")
+    given = [hull(whole)] if not parts else parts
+    for k, part in enumerate(given):
+        made = in_metres(part, unit_of(part, None, tuple(METRES), "parts", "m"))
+        shape = _mesh(pxr, stage, f"/body/collision/part{k}", Level("", made.vertices, made.faces, None, None, {}))
+        shape.CreatePurposeAttr(pxr.UsdGeom.Tokens.guide)  # not drawn
+        physics.CollisionAPI.Apply(shape.GetPrim())
+        physics.MeshCollisionAPI.Apply(shape.GetPrim()).CreateApproximationAttr("convexHull")
+
+
+def write_usd(
+    glb: PathLike, file: PathLike, *, density: Optional[float] = None, parts: Sequence[MeshLike] = ()
+) -> list[str]:
     """Write what a .glb of ``synth`` holds as Universal Scene Description.
 
     Lengths are metres and +z is up, as in the body's frame. Each level of detail is a variant of the set ``lod``, of which
@@ -97,7 +132,13 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
     glb
         A file of ``synth -o rock.glb``, with the maps of ``--uv charts --bake N`` or without.
     file
-        The scene, .usda or .usdc.
+        The scene, .usda, .usdc or .usdz, which holds its maps.
+    density
+        kg/m3. The body then is a rigid body of UsdPhysics with mass, centre and inertia, for Isaac Sim and others; it
+        must be closed. None: a body to be seen alone.
+    parts
+        With `density`: convex meshes that collide, such as those of :func:`convex_parts`, in the unit that they state,
+        else metres; without them the body's :func:`hull`.
 
     Returns
     -------
@@ -113,11 +154,15 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
     """
     name = _arrays.file_name(file, "file")
     stem, extension = os.path.splitext(name)
-    if extension not in (".usda", ".usdc"):
-        raise ValueError(f"{name}: is no .usda or .usdc file; name it with that extension")
+    if extension not in (".usda", ".usdc", ".usdz"):
+        raise ValueError(f"{name}: is no .usda, .usdc or .usdz file; name it with that extension")
+    if extension == ".usdz":
+        return _packed(glb, name, density, parts)
+    if parts and density is None:
+        raise ValueError("parts: collide only with a density; give one")
     levels = read_levels(glb)
     pxr = required("pxr", "usd")
-    for module in ("Usd", "UsdGeom", "UsdShade", "Sdf", "Vt"):
+    for module in ("Usd", "UsdGeom", "UsdPhysics", "UsdShade", "UsdUtils", "Sdf", "Vt", "Gf"):
         required(f"pxr.{module}", "usd")
     stage = pxr.Usd.Stage.CreateInMemory()
     pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -142,5 +187,19 @@ def write_usd(glb: PathLike, file: PathLike) -> list[str]:
             material = _material(pxr, stage, "/body/regolith", files)
             pxr.UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
     variants.SetVariantSelection("lod0")
+    if density is not None:
+        _collides(pxr, stage, levels[0], density, parts)
     stage.GetRootLayer().Export(name)
     return written
+
+
+def _packed(glb: PathLike, name: str, density: Optional[float], parts: Sequence[MeshLike]) -> list[str]:
+    """Writes a .usdz, whole or not at all."""
+    with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(name))) as folder:
+        stem = os.path.splitext(os.path.basename(name))[0]
+        scene, *_ = write_usd(glb, os.path.join(folder, stem + ".usdc"), density=density, parts=parts)
+        packed = os.path.join(folder, stem + ".usdz")
+        if not required("pxr.UsdUtils", "usd").CreateNewUsdzPackage(scene, packed):
+            raise OSError(f"{name}: cannot be written")
+        os.replace(packed, name)
+    return [name]

@@ -43,6 +43,25 @@ TEST_F(MeshFormats, ObjCornersNegativeIndicesPolygonsAndCrlf) {
   EXPECT_TRUE(mesh.vertices[3] == (Vec3d{0, 1, 0}));
 }
 
+// What Astrolith writes comes back in metres, without the seams of its texture.
+TEST_F(MeshFormats, GlbComesBack) {
+  TriangleMesh mesh = icosphere(3, 0.5, {0.25, 0, 1});
+  for (const bool textured : {false, true}) {
+    MeshFileInfo info{"km", "body-fixed", ""};
+    info.texture_coordinates = textured;
+    write_mesh(mesh, folder / "a.glb", info);
+    const TriangleMesh back = read_mesh(folder / "a.glb");
+    EXPECT_TRUE(analyze_topology(back).closed);
+    EXPECT_NEAR(volume(back) / volume(mesh), 1e9, textured ? 1e4 : 1e3);
+    EXPECT_NEAR(back.bounds().max.z, 1500.0, 1e-3);
+    EXPECT_EQ(stated_length_unit(folder / "a.glb"), "m");
+  }
+  write_mesh(mesh, folder / "a.glb", {"px", "", ""});
+  EXPECT_EQ(stated_length_unit(folder / "a.glb"), "px");
+  write_mesh(mesh, folder / "a.glb", {"km", "", "", Vec3d{0, 0, 2}, true});  // a whole body about its origin
+  EXPECT_NEAR(read_mesh(folder / "a.glb").bounds().max.z, 3500.0, 1e-3);
+}
+
 // An index may name a vertex that comes later.
 TEST_F(MeshFormats, ObjForwardReference) {
   EXPECT_EQ(read("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles.size(), 1u);

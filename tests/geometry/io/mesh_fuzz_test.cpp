@@ -1,6 +1,8 @@
 // A damaged file of any format gives a valid mesh or an InputError, and nothing else.
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "tests/support/scratch_folder.h"
@@ -73,13 +75,36 @@ TEST_P(MeshFuzz, PiecesRepeatedAndRemoved) {
   }
 }
 
+// What the valid files hold.
+// A node around others scales, one inside turns +z up into +y up and shifts; what only collides is no
+// surface.
+TEST(MeshSeeds, GlbIsTheSceneInMetresWithZUp) {
+  const std::filesystem::path file = std::filesystem::path(ASTROLITH_FUZZ_SEEDS) / "glb/tetrahedron.glb";
+  const TriangleMesh mesh = read_mesh(file);
+  EXPECT_EQ(stated_length_unit(file), "m");
+  EXPECT_NEAR(volume(mesh), 8.0 / 6.0, 1e-12);
+  ASSERT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_TRUE(analyze_topology(mesh).closed);
+  const Box box = mesh.bounds();
+  EXPECT_TRUE(box.min == (Vec3d{0, -10, 0}));  // z of the file is -y here: 2 * 5
+  EXPECT_TRUE(box.max == (Vec3d{2, -8, 2}));
+}
+
+TEST(MeshSeeds, DskHasThePlatesOfItsSegments) {
+  const std::filesystem::path file = std::filesystem::path(ASTROLITH_FUZZ_SEEDS) / "dsk/tetrahedron.bds";
+  const TriangleMesh mesh = read_mesh(file);
+  EXPECT_TRUE((mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}));
+  EXPECT_TRUE(mesh.vertices[1] == (Vec3d{0, 1, 0}));
+  EXPECT_EQ(stated_length_unit(file), "km");
+}
+
 INSTANTIATE_TEST_SUITE_P(EveryFormat, MeshFuzz,
                          ::testing::Values("obj/tetrahedron.obj", "obj/polygons.obj", "ply/ascii.ply",
                                            "ply/little.ply", "ply/big.ply", "stl_binary/binary.stl",
                                            "stl_ascii/ascii.stl", "off/plain.off", "plate/one_count.tab",
-                                           "icq/cube_1.icq", "bmf/tetrahedron.bmf", "plate/type_4.ver",
-                                           "grid_table/plain.tab", "grid_table/named.csv",
-                                           "grid_table/labelled.tab"));
+                                           "icq/cube_1.icq", "bmf/tetrahedron.bmf", "glb/tetrahedron.glb",
+                                           "dsk/tetrahedron.bds", "plate/type_4.ver", "grid_table/plain.tab",
+                                           "grid_table/named.csv", "grid_table/labelled.tab"));
 
 }  // namespace
 }  // namespace astrolith

@@ -150,7 +150,9 @@ TEST_F(MeshText, OtherFilesAreNamedWithARemedy) {
   expect_refused("a.step", "ISO-10303-21;\nHEADER;\n", "a STEP file; export it as triangles");
   expect_refused("a.fbx", "Kaydara FBX Binary  ", "an FBX scene; open it in its program");
   expect_refused("a.blend", "BLENDER-v300", "a scene of Blender");
-  expect_refused("a.bds", "DAS/DSK ", "a SPICE DSK; export its plates: dskexp");
+  expect_refused("a.bds", "DAF/DSK ", "a SPICE DSK; export its plates: dskexp");
+  expect_refused("a.bds", "DAS/DSK ", "ends within its first record");
+  expect_refused("a.glb", "glTF", "is no glTF of version 2");
   expect_refused("a.cub", "Object = IsisCube\n", "an ISIS cube");
   expect_refused("a.tab", "<?xml version=\"1.0\"?>", "give the file that a label names");
 }

@@ -63,7 +63,7 @@ TEST_F(WriteGlb, ArraysComeBack) {
   const auto indices = array<std::uint32_t>(primitive.indices);
   ASSERT_EQ(positions.size(), mesh.vertices.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    ASSERT_EQ(positions[i].x, static_cast<float>(mesh.vertices[i].x));
+    ASSERT_EQ(positions[i].x, static_cast<float>(1000.0 * mesh.vertices[i].x));  // metres
     ASSERT_EQ(normals[i].z, static_cast<float>(mesh.normals[i].z));
   }
   const auto& accessor = model.accessors.at(static_cast<std::size_t>(primitive.indices));
@@ -99,7 +99,7 @@ TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
   for (Vec3d& v : mesh.vertices) v.z -= 1;
   mesh.normals = vertex_normals(mesh);
   mesh.colors.assign(mesh.vertices.size(), {1, 2, 3});
-  MeshFileInfo info{"km", "body-fixed", "", Vec3d{0, 0, 1}};
+  MeshFileInfo info{"m", "body-fixed", "", Vec3d{0, 0, 1}};
   info.texture_coordinates = true;
   write_and_load(info);
   const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
@@ -145,24 +145,24 @@ TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
 TEST_F(WriteGlb, BoundsAreThoseOfThePositions) {
   const auto& accessor = model.accessors.at(0);
   const Box box = mesh.bounds();
-  EXPECT_FLOAT_EQ(static_cast<float>(accessor.minValues.at(2)), static_cast<float>(box.min.z));
-  EXPECT_FLOAT_EQ(static_cast<float>(accessor.maxValues.at(0)), static_cast<float>(box.max.x));
+  EXPECT_EQ(static_cast<float>(accessor.minValues.at(2)), static_cast<float>(1000.0 * box.min.z));
+  EXPECT_EQ(static_cast<float>(accessor.maxValues.at(0)), static_cast<float>(1000.0 * box.max.x));
 }
 
-// The spin pole +z must point up, which is +y, and a kilometre must be 1000 metres.
-TEST_F(WriteGlb, NodeTurnsPoleUpAndScalesToMetres) {
+// The spin pole +z must point up, which is +y. Positions are metres without a scale.
+TEST_F(WriteGlb, NodeTurnsPoleUpAndScalesNothing) {
   const tinygltf::Node& node = model.nodes.at(0);
   const Vec3d axis{node.rotation.at(0), node.rotation.at(1), node.rotation.at(2)};
   const double w = node.rotation.at(3);
   const auto rotate = [&](const Vec3d& v) { return v + 2.0 * cross(axis, cross(axis, v) + w * v); };
   EXPECT_NEAR(norm(rotate({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
   EXPECT_NEAR(norm(rotate({1, 0, 0}) - Vec3d{1, 0, 0}), 0, 1e-12);
-  for (const double scale : node.scale) EXPECT_EQ(scale, 1000);
+  EXPECT_TRUE(node.scale.empty() && node.matrix.empty());
 }
 
 TEST_F(WriteGlb, AssetStatesUnitAndFrame) {
   EXPECT_EQ(model.asset.version, "2.0");
-  EXPECT_EQ(model.asset.extras.Get("length_unit").Get<std::string>(), "km");
+  EXPECT_EQ(model.asset.extras.Get("length_unit").Get<std::string>(), "m");
   EXPECT_EQ(model.asset.extras.Get("frame").Get<std::string>(), "body-fixed");
 }
 

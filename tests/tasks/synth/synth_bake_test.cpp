@@ -8,6 +8,8 @@
 namespace astrolith {
 namespace {
 
+using testing::has;
+
 using SynthBake = SynthTest;
 
 nlohmann::json glb_document(const std::string& glb) {
@@ -42,6 +44,26 @@ TEST_F(SynthBake, WritesMapsAndMaterialsOfEachLevel) {
                 text(level == 0 ? "out_normal.png" : "out_lod1_normal.png"));
     EXPECT_TRUE(material.contains("occlusionTexture"));
   }
+}
+
+// An .obj names the material beside it, and the material the maps that are there.
+TEST_F(SynthBake, ObjHasItsMaterial) {
+  const auto summary = figures("r.json -o out.obj --resolution 32 --uv charts --bake 128 --lod 2");
+  EXPECT_EQ(summary["maps"][1]["files"]["material"], "out_lod1.mtl");
+  for (const std::string name : {"out", "out_lod1"}) {
+    EXPECT_TRUE(has(text(name + ".obj"), "\nmtllib " + name + ".mtl\nusemtl regolith\nf ")) << name;
+    const std::string material = text(name + ".mtl");
+    EXPECT_TRUE(material.starts_with("newmtl regolith\n"));
+    EXPECT_TRUE(has(material, "\nmap_Ka " + name + "_occlusion.png\n"));
+    EXPECT_TRUE(has(material, "\nnorm " + name + "_normal.png\n"));
+    EXPECT_FALSE(has(material, "map_Kd"));  // no layer paints
+  }
+  synthesise("plain.obj", "--uv charts");
+  EXPECT_FALSE(has(text("plain.obj"), "mtllib") || std::filesystem::exists(folder_ / "plain.mtl"));
+  // An input is no output.
+  std::filesystem::copy_file(folder_ / "r.json", folder_ / "own.mtl",
+                             std::filesystem::copy_options::overwrite_existing);
+  refuse("own.mtl -o own.obj --uv charts --bake 128", "own.mtl");
 }
 
 // The coarsest mesh with its maps looks more like the finest one than it does without them.

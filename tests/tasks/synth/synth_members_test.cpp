@@ -63,7 +63,7 @@ TEST_F(SynthMembers, HaveLevelsAndMaps) {
       "--bake 128";
   expect_made(run(pack), "2 made");
   const Json files = manifest().at(1)["files"];
-  EXPECT_EQ(files.size(), 12u);  // two meshes with five maps each
+  EXPECT_EQ(files.size(), 14u);  // two meshes with a material and five maps each
   EXPECT_EQ(files.back()["name"], "0000001_lod1_label.png");
   expect_made(run(pack), "0 made, 2 already there");
   std::filesystem::remove(folder_ / "set/0000001_lod1_normal.png");
@@ -94,6 +94,20 @@ TEST_F(SynthMembers, EachHasFilesAndALine) {
   // The member's own recipe makes the member's mesh.
   succeed("set/0000004.json -o alone.ply --resolution 20");
   EXPECT_EQ(file_sha256(folder_ / "alone.ply"), entries.at(4)["files"][0]["sha256"]);
+}
+
+// A manifest in a folder that is a symbolic link names files by the way that the system goes.
+TEST_F(SynthMembers, AreFoundThroughALink) {
+  std::filesystem::create_directories(folder_ / "deep/deeper");
+  std::filesystem::create_directory_symlink("deep/deeper", folder_ / "link");
+  const std::string line =
+      "r.json --members 0:2 -o bodies/{member}.ply --manifest link/m.jsonl --resolution 16";
+  expect_made(run(line), "2 made");
+  const std::string name =
+      Json::parse(text("link/m.jsonl").substr(0, text("link/m.jsonl").find('\n')))["files"][0]["name"];
+  EXPECT_TRUE(name.starts_with("../../bodies/")) << name;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "link" / name));
+  expect_made(run(line), "0 made, 2 already there");
 }
 
 // Threads make members beside each other. The folder of one is a file, so that it fails among the others.

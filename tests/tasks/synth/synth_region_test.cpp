@@ -183,7 +183,7 @@ TEST_F(SynthRegion, PatchesAreOpenAndStateTheirOrigin) {
   EXPECT_LE(box.max.x, 0.1501);
   EXPECT_GE(box.min.y, -0.1501);
   EXPECT_GT(box.extent().y, 0.299);
-  EXPECT_TRUE(has(synthesise("patch.glb", "--patch -1.05 0 0.125 0.3"), "\"origin\":[-1.05,0"));
+  EXPECT_TRUE(has(synthesise("patch.glb", "--patch -1.05 0 0.125 0.3"), "\"origin\":[-1050.0,0"));  // metres
 }
 
 TEST_F(SynthRegion, APatchBesideTheSurfaceIsMovedOntoIt) {
