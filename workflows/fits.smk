@@ -46,14 +46,14 @@ rule fit:
     params: folder=FOLDER
     threads: 1
     shell:
-        "mkdir -p {params.folder}/recipes {params.folder}/summaries {params.folder}/reports;"
-        " {PROGRAM} {input:q} -o {params.folder}/recipes/{wildcards.name:q}.json --threads {threads} --quiet"
-        " --summary {params.folder}/summaries/{wildcards.name:q}.json"
-        " --report {params.folder}/reports/{wildcards.name:q} {OPTIONS} >{output:q} 2>&1 ||"
-        " rm -f {params.folder}/summaries/{wildcards.name:q}.json"
+        "mkdir -p {params.folder:q}/recipes {params.folder:q}/summaries {params.folder:q}/reports;"
+        " {PROGRAM:q} {input:q} -o {params.folder:q}/recipes/{wildcards.name:q}.json --threads {threads} --quiet"
+        " --summary {params.folder:q}/summaries/{wildcards.name:q}.json"
+        " --report {params.folder:q}/reports/{wildcards.name:q} {OPTIONS} >{output:q} 2>&1 ||"
+        " rm -f {params.folder:q}/summaries/{wildcards.name:q}.json"
 
 
 rule table:
     input: expand(f"{FOLDER}/messages/{{name}}.txt", name=MODELS)
     output: f"{FOLDER}/fits.csv", f"{FOLDER}/index.html"
-    shell: "{WORKFLOWS}/fit_table.py {FOLDER}"
+    shell: "{WORKFLOWS:q}/fit_table.py {FOLDER:q}"

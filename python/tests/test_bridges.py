@@ -55,6 +55,20 @@ def test_open3d_there_and_back(ball):
     assert same(bridges.from_open3d(made), ball)
 
 
+def test_harmonics_of_a_shape_are_those_that_made_it():
+    made = astrolith.mesh({**BALL, "body": {**BALL["body"], "spheres": [[0, 0, 0, 2.0]]}}, resolution=96)
+    x, y, z = (made.vertices / np.linalg.norm(made.vertices, axis=1)[:, None]).astype(float).T
+    p20, p32 = np.sqrt(5) * (1.5 * z * z - 0.5), np.sqrt(7 * 2 / 120) * 15 * z  # times u^2 cos 2 longitude = x^2 - y^2
+    radius = 2.0 + 0.2 * p20 + 0.1 * p32 * (x * x - y * y) - 0.05 * np.sqrt(3) * y
+    body = astrolith.Mesh(radius[:, None] * np.stack([x, y, z], axis=1), made.faces, length_unit="m")
+    found = bridges.shape_harmonics(body, 6)
+    expected = np.zeros((2, 7, 7))
+    expected[0, 0, 0], expected[0, 2, 0], expected[0, 3, 2], expected[1, 1, 1] = 2.0, 0.2, 0.1, -0.05
+    np.testing.assert_allclose(found, expected, atol=1e-3)
+    with pytest.raises(ValueError, match="^mesh: does not have one surface"):
+        bridges.shape_harmonics((body.vertices + [0, 0, 9.0], body.faces), 2)
+
+
 def test_what_is_no_mesh_of_triangles_is_a_value_error():
     for package, call in (
         ("pyvista", lambda p: bridges.from_pyvista(p.ImageData(dimensions=(3, 3, 3)))),

@@ -18,6 +18,7 @@ from astrolith.bridges.meshes import (
     to_pyvista,
     to_trimesh,
 )
+from astrolith.bridges.shapes import shape_harmonics
 from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
 from astrolith.bridges.usd import write_usd
 
@@ -30,6 +31,7 @@ __all__ = [
     "from_pyvista",
     "from_trimesh",
     "hull",
+    "shape_harmonics",
     "to_open3d",
     "to_pyvista",
     "to_trimesh",
