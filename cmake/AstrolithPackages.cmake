@@ -13,6 +13,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # .ply.zst
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # NPZ
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)  # PNG
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # text and lines of pictures
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
@@ -21,7 +22,6 @@ if(ASTROLITH_ESTIMATION)
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(CGAL REQUIRED)              # repair of meshes
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
-  pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # figures
   find_path(THREE_JS_FOLDER build/three.min.js PATHS /usr/share/javascript/three REQUIRED NO_CACHE)  # reports in 3-D (libjs-three)
 endif()
 

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 short='-*Long:*Long/*' long='*Long:*Long/*'  # the names of cases that take seconds (GTEST_FILTER)
 first=(numerics recipe geometry gravity descriptor surface_statistics spectrum classification synthesis)
-second=(cuda optimize plot page repair gabor_fit shape_fit details_fit)
+second=(cuda optimize page repair gabor_fit shape_fit details_fit)
 python="-DASTROLITH_PYTHON=ON -DPython_EXECUTABLE=$PWD/build/python-venv/bin/python"
 times=$(mktemp)
 trap 'cat "$times" >&2; rm "$times"' EXIT

@@ -36,9 +36,8 @@ synthesis/bake             -> numerics recipe geometry synthesis/mesh synthesis/
 cuda                       -> numerics descriptor synthesis cuda/.
 cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics
-estimation/plot            -> numerics synthesis/picture
 estimation/page            -> numerics geometry synthesis/picture
-estimation/gabor           -> numerics recipe geometry synthesis/gabor synthesis/picture estimation/plot estimation/page estimation/gabor
+estimation/gabor           -> numerics recipe geometry synthesis/gabor synthesis/picture estimation/page estimation/gabor
 estimation/gabor/image     -> numerics
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
 estimation/gabor/exemplar  -> numerics recipe synthesis/exemplar estimation/gabor/image estimation/gabor/spectrum
@@ -51,7 +50,7 @@ estimation/shape/refinement -> numerics recipe geometry estimation/shape/target 
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/relief    -> numerics recipe geometry synthesis
-estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
+estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/page estimation/shape/target estimation/shape/fit
 tasks/job                  -> numerics recipe geometry synthesis cuda
 tasks/repair               -> numerics geometry tasks/job
 tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair

@@ -5,10 +5,10 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build pkg-config python3
   libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
-  libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libzip-dev libzstd-dev
+  libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libcairo2-dev libzip-dev libzstd-dev
   libgtest-dev
 )
-fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libcairo2-dev libspectra-dev libcgal-dev libjs-three)
+fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libspectra-dev libcgal-dev libjs-three)
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of
 # sanitized builds, --package what makes a Debian package, --python what builds the Python package, --browser what opens the
 # pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, --engines what tests

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/plot/figure.h"
+#include "synthesis/picture/figure.h"
 #include "numerics/files/output_file.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/picture/colormap.h"

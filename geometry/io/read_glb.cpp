@@ -53,9 +53,7 @@ std::array<double, kCount> numbers_of(const Json& node, const char* name,
   if (!node.contains(name)) return otherwise;
   const auto values = node.at(name).get<std::vector<double>>();
   if (values.size() != kCount) throw Json::other_error::create(501, "another count of numbers", &node);
-  std::array<double, kCount> result;
-  std::copy(values.begin(), values.end(), result.begin());
-  return result;
+  return node.at(name).get<std::array<double, kCount>>();
 }
 
 Placement placement_of(const Json& node) {

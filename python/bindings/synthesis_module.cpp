@@ -256,7 +256,7 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
       run_job(std::move(progress), threads,
               [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) mutable {
                 if (options.views.empty()) options.views = usual_views(mesh);
-                return render_picture(mesh, options, state.progress("preview")).image;
+                return render_picture(mesh, options, state.progress("preview")).marked();
               });
   return array_of<std::uint8_t>(
       transparent ? rgba_bytes(image) : opaque_bytes(image).pixels,

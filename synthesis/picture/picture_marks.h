@@ -44,7 +44,6 @@ struct PlaceRing {
 };
 
 struct PreviewOptions;
-struct RgbaImage16;
 
 struct PictureMarks {
   std::optional<ValueScale> values;  // a bar below the views
@@ -59,8 +58,5 @@ struct PictureMarks {
 // Rows below the views that the marks take of a picture: none where nothing stands there, and for pictures
 // under 160 x 120 pixels, which have no marks.
 int marks_height(const PreviewOptions& options);
-
-// Writes printable ASCII in white, 16 pixels high, from the place of its upper left corner.
-void draw_caption(RgbaImage16& image, int left, int top, const std::string& text);
 
 }  // namespace astrolith

@@ -115,7 +115,9 @@ class Painter {
     }
   }
 
-  void draw_marks(RgbaImage16& image) const { astrolith::draw_marks(image, options_, rays_, scene_); }
+  Figure draw_marks(const RgbaImage16& image) const {
+    return astrolith::draw_marks(image, options_, rays_, scene_);
+  }
 
   // The bit of the view that a pixel belongs to.
   std::uint64_t view_bit(int x, int y) const {
@@ -361,12 +363,27 @@ RenderedPicture render_picture(const TriangleMesh& mesh, const PreviewOptions& o
       throw WorkError("preview: stopped before the picture was complete");
     }
   }
-  painter.draw_marks(image);
-  return {std::move(image), bands.radiance(), bands.empty_views()};
+  Figure marks = painter.draw_marks(image);
+  return {std::move(image), bands.radiance(), bands.empty_views(), std::move(marks)};
+}
+
+RgbaImage16 RenderedPicture::marked() && {
+  marks.draw_over(image);
+  return std::move(image);
+}
+
+void write_page(const RenderedPicture& picture, const std::filesystem::path& file) {
+  constexpr double kPixels = 2.0;  // in a point
+  const double width = picture.image.width, height = picture.image.height;
+  Figure page(width, height, Figure::Paper::kNone);
+  page.picture({0.0, 0.0, width, height}, picture.image);
+  page.add(picture.marks);
+  if (file.extension() == ".pdf") return page.write_pdf(file, kPixels);
+  page.write_svg(file, kPixels);
 }
 
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
-  return opaque_bytes(render_picture(mesh, options, progress).image);
+  return opaque_bytes(render_picture(mesh, options, progress).marked());
 }
 
 }  // namespace astrolith

@@ -11,6 +11,7 @@
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
 #include "synthesis/picture/camera.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/picture_marks.h"
 #include "synthesis/picture/reflectance.h"
@@ -66,10 +67,18 @@ struct PreviewOptions {
 };
 
 struct RenderedPicture {
-  RgbaImage16 image;
+  RgbaImage16 image;            // without its marks
   std::vector<float> radiance;  // (height x width x 3) I/F, 0 beside the mesh; empty where it is not kept
   std::vector<std::size_t> empty_views;  // those whose pixels, seen in their middles, all miss the mesh
+  Figure marks;                          // a point is a pixel
+
+  // The picture with its marks.
+  RgbaImage16 marked() &&;
 };
+
+// Writes a page of vectors, .svg or .pdf, that has the picture in it: two of its pixels are a point of 1/72
+// inch. Throws as Figure does.
+void write_page(const RenderedPicture& picture, const std::filesystem::path& file);
 
 // The linear light of the mesh's own colours, for PreviewOptions::vertex_colors; empty where it has none.
 std::vector<Vec3<float>> linear_colors(const TriangleMesh& mesh);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/preview.h"
 #include "synthesis/picture/ray_scene.h"
 
@@ -90,8 +91,8 @@ struct SeenNormals {
 SeenNormals seen_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& vertex_normals,
                          const RayHit& hit, const Vec3f& to_viewer);
 
-// Draws the marks of a picture into it (picture_marks.h).
-void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
-                const RayScene& scene);
+// The marks of a picture (picture_marks.h), on a page whose points are its pixels.
+Figure draw_marks(const RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
+                  const RayScene& scene);
 
 }  // namespace astrolith

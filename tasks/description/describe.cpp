@@ -18,6 +18,7 @@
 #include "tasks/job/device_option.h"
 #include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/picture_options.h"
 #include "tasks/repair/shape_repair.h"
 
 namespace astrolith {
@@ -58,9 +59,10 @@ void add_describe_options(Job& job, DescribeArguments& arguments) {
                      "the craters of the surface, the surest first: place, diameter, depth, rim, "
                      "freshness, completeness and confidence of each (.csv or .json)");
   craters.placeholder("FILE.csv").writes();
-  app.add_option(
-         "--craters-picture", arguments.picture,
-         "with --craters: the mesh with a ring about each likely crater, red to yellow with confidence")
+  app.add_option("--craters-picture", arguments.picture,
+                 "with --craters: the mesh with a ring about each likely crater, red to yellow with "
+                 "confidence (.png, "
+                 ".svg, .pdf)")
       .needs(craters)
       .placeholder("FILE.png")
       .writes();
@@ -135,7 +137,7 @@ void run_craters(Job& job, const DescribeArguments& arguments, const TriangleMes
   look.marks.axes = true;
   look.marks.length_unit = unit;
   add_rings(found, kMostRings, look.marks);
-  write_png8_rgb(render_preview(mesh, look, job.progress("picture")), arguments.picture);
+  PictureOptions().write(job, render_picture(mesh, look, job.progress("picture")), arguments.picture);
 }
 
 void require_outputs(const DescribeArguments& arguments) {
@@ -149,7 +151,7 @@ void require_outputs(const DescribeArguments& arguments) {
     require_writable(file);
   };
   require(arguments.craters, {".csv", ".json"});
-  require(arguments.picture, {".png"});
+  require(arguments.picture, {".png", ".svg", ".pdf"});
   if (arguments.surface) return require(arguments.output, {".json", ".csv"});
   require(arguments.output, {".npy"});
 }

@@ -42,7 +42,8 @@ struct Arguments {
 void add_options(Job& job, Arguments& a) {
   OptionTable& app = job.options;
   app.add_option("shape", a.shape, "mesh (" + read_mesh_words() + ")").required().placeholder("MESH").reads();
-  app.add_option("-o,--output", a.output, "the picture; needed unless a curve is asked for")
+  app.add_option("-o,--output", a.output,
+                 "the picture (.png, .svg, .pdf); needed unless a curve is asked for")
       .placeholder("FILE.png")
       .writes();
   Option color = app.add_option("--color", a.color,
@@ -93,7 +94,7 @@ void check(const Job& job, const Arguments& a) {
     throw InputError(
         "--output: is required; name the picture to make, such as -o body.png, or ask for a curve");
   if (!a.output.empty()) {
-    require_extension(a.output, {".png"});
+    a.look.check_file(a.output);
     require_writable(a.output);
   } else if (!a.radiance.empty()) {
     throw InputError("--radiance: is of the picture; add -o FILE.png");

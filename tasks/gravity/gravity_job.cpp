@@ -262,7 +262,8 @@ void add_options(Job& job, Arguments& a) {
   app.add_flag("--json", a.json, "print all figures as JSON, in place of the ten lines that matter");
   declare_sites_options(app, a.sites);
   app.add_option("--preview", a.preview,
-                 "also a picture in colours, with a bar; with --sites it has one view from above of each of "
+                 "also a picture in colours (.png, .svg, .pdf), with a bar; with --sites it has one view "
+                 "from above of each of "
                  "the first nine sites, whose ground is orange and carries the site's number")
       .placeholder("FILE.png")
       .writes();
@@ -303,7 +304,7 @@ void check(const Job& job, const Arguments& a) {
   }
   a.look.check(job, !a.preview.empty(), "add --preview FILE.png");
   if (!a.preview.empty()) {
-    require_extension(a.preview, {".png"});
+    a.look.check_file(a.preview);
     require_writable(a.preview);
   }
 }

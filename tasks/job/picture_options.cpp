@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "numerics/errors.h"
+#include "tasks/job/output_names.h"
 #include "tasks/job/pixel_size.h"
 
 namespace astrolith {
@@ -33,6 +34,8 @@ std::vector<Camera> parse_cameras(const std::vector<std::string>& words) {
   for (const std::string& camera : words) cameras.push_back(parse_camera("--camera", camera));
   return cameras;
 }
+
+bool is_page(const std::filesystem::path& file) { return file.extension() != ".png"; }
 
 }  // namespace
 
@@ -152,9 +155,18 @@ void PictureOptions::light_from(const Vec3d& direction) {
   sun = {direction.x, direction.y, direction.z};
 }
 
-void PictureOptions::write(const Job& job, const RenderedPicture& picture,
-                           const std::filesystem::path& file) const {
-  write_png(picture.image, bits, background == "transparent", file);
+void PictureOptions::check_file(const std::filesystem::path& file) const {
+  require_extension(file, {".png", ".svg", ".pdf"});
+  if (is_page(file) && bits == 16)
+    throw InputError("--picture-bits: " + file.string() + " is a page with a picture of 8 bits; name a .png");
+}
+
+void PictureOptions::write(const Job& job, RenderedPicture picture, const std::filesystem::path& file) const {
+  if (is_page(file)) {
+    write_page(picture, file);
+  } else {
+    write_png(std::move(picture).marked(), bits, background == "transparent", file);
+  }
   for (const std::size_t view : picture.empty_views) {
     job.say(
         fmt::format("note: {}: the body covers no pixel of view {}; change the target of its camera, or "

@@ -39,8 +39,10 @@ struct PictureOptions {
   void look_from(const Vec3d& direction);
   void light_from(const Vec3d& direction);
 
+  // Throws InputError for a file that is no .png, .svg or .pdf, and for 16 bits of a page of vectors.
+  void check_file(const std::filesystem::path& file) const;
   // Writes the picture, and says which of its views show nothing of the body.
-  void write(const Job& job, const RenderedPicture& picture, const std::filesystem::path& file) const;
+  void write(const Job& job, RenderedPicture picture, const std::filesystem::path& file) const;
 
   bool has_pinholes() const;
   // Whether an option says from where to look, or where the sun stands.

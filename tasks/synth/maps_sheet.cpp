@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "numerics/srgb.h"
-#include "synthesis/picture/picture_marks.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/preview.h"
 
 namespace astrolith {
@@ -94,19 +94,6 @@ RgbImage reduced(int side, const Byte& byte) {
   return image;
 }
 
-void paste(const RgbImage& panel, int left, int top, RgbaImage16& sheet) {
-  for (int y = 0; y < panel.height; ++y) {
-    for (int x = 0; x < panel.width; ++x) {
-      const auto from = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(panel.width) +
-                             static_cast<std::size_t>(x));
-      const auto to = 4 * (static_cast<std::size_t>(top + y) * static_cast<std::size_t>(sheet.width) +
-                           static_cast<std::size_t>(left + x));
-      for (std::size_t k = 0; k < 3; ++k)
-        sheet.pixels[to + k] = static_cast<std::uint16_t>(257u * panel.pixels[from + k]);
-    }
-  }
-}
-
 }  // namespace
 
 void MapsSheet::add(std::uint64_t member, std::size_t level, std::size_t levels, const TriangleMesh& mesh,
@@ -139,18 +126,25 @@ void MapsSheet::write(const std::filesystem::path& file) const {
   if (rows_.empty()) return;
   const bool has_color =
       std::ranges::any_of(rows_, [](const auto& row) { return row.second[kColor].width > 0; });
-  RgbaImage16 sheet{kPanel * (has_color ? kColumns : kColumns - 1), 0, {}};
-  sheet.height = kCaption + static_cast<int>(rows_.size()) * kPanel;
-  sheet.pixels.assign(4 * static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.height), 0);
-  int top = kCaption;
+  const int columns = has_color ? kColumns : kColumns - 1, rows = static_cast<int>(rows_.size());
+  const Rectangle all{0.0, 0.0, double{kPanel} * columns, double{kCaption} + double{kPanel} * rows};
+  constexpr double kText = 16.0;
+  Figure sheet(all.width, all.height);
+  sheet.fill(all, {0.0, 0.0, 0.0});
+  const auto caption = [&](double left, double top, const std::string& words) {
+    sheet.text(left + 6.0, top + kText, words, kText, Figure::Align::kLeft, false, {1.0, 1.0, 1.0});
+  };
+  double top = kCaption;
   for (const auto& [member, row] : rows_) {
-    for (int k = 0; k < kColumns; ++k) paste(row[static_cast<std::size_t>(k)], k * kPanel, top, sheet);
-    if (rows_.size() > 1) draw_caption(sheet, 6, top + 6, std::to_string(member));
+    for (int k = 0; k < columns; ++k) {
+      const RgbImage& panel = row[static_cast<std::size_t>(k)];
+      if (panel.width > 0) sheet.picture({double{kPanel} * k, top, kPanel, kPanel}, panel, false);
+    }
+    if (rows > 1) caption(0.0, top + 4.0, std::to_string(member));
     top += kPanel;
   }
-  for (int k = 0; k * kPanel < sheet.width; ++k)
-    draw_caption(sheet, k * kPanel + 6, 5, kCaptions[static_cast<std::size_t>(k)]);
-  write_png(sheet, 8, false, file);
+  for (int k = 0; k < columns; ++k) caption(double{kPanel} * k, 3.0, kCaptions[static_cast<std::size_t>(k)]);
+  sheet.write_png(file, 72.0);
 }
 
 }  // namespace astrolith

@@ -214,7 +214,8 @@ std::vector<double> flat(const std::vector<Vec3d>& vectors) {
 void declare_preview_options(Job& job, PreviewRequest& request) {
   job.options
       .add_option("--preview", request.file,
-                  "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
+                  "also a picture (.png, .svg, .pdf) of the mesh under sunlight, with shadows: from +x, +y, "
+                  "+z and obliquely, a "
                   "patch from above its ground and obliquely")
       .placeholder("FILE.png")
       .writes();
@@ -242,7 +243,10 @@ void check_preview(const Job& job, const PreviewRequest& request) {
     parse_maps_size(request.maps_size);
   }
   if (has_picture) {
-    require_extension(request.file, {".png"});
+    request.look.check_file(request.file);
+    // Their pictures have no text, and are drawn side by side.
+    if (job.options.option("--members").count() > 0 && request.file.extension() != ".png")
+      throw InputError("--preview: pictures of members are .png");
     require_writable(request.file);
   }
   if (has_maps) {

@@ -45,7 +45,7 @@ MeshStatistics mesh_field(const AnalyticField& field, const Box& bounds, int res
 MeshStatistics mesh_patch(const AnalyticField& field, double size, int resolution, MeshSink& sink,
                           const Progress& progress = {});
 
-inline Box cube(double half_side) {
+inline Box cube_box(double half_side) {
   return {{-half_side, -half_side, -half_side}, {half_side, half_side, half_side}};
 }
 

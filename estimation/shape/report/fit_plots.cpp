@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/plot/figure.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/colormap.h"
 
 namespace astrolith {

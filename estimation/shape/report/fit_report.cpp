@@ -11,7 +11,7 @@
 
 #include "descriptor/surface/surface_statistics.h"
 #include "estimation/page/report_page.h"
-#include "estimation/plot/figure.h"
+#include "synthesis/picture/figure.h"
 #include "estimation/shape/report/fit_plots.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"

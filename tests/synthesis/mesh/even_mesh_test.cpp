@@ -15,7 +15,7 @@ namespace astrolith {
 namespace {
 
 using testing::AnalyticField;
-using testing::cube;
+using testing::cube_box;
 
 AnalyticField even_test_field(double (*function)(const Vec3d&), double lipschitz) {
   return AnalyticField(function, lipschitz);
@@ -48,7 +48,7 @@ struct EvenedMesh {
 template <int B = kBlockCells>
 EvenedMesh evened(const AnalyticField& field, int resolution, MeshTile tile = {}) {
   EvenedMesh made;
-  made.step = mesh_field<B>(field, cube(1.0), resolution, made.plain, {}, tile).step;
+  made.step = mesh_field<B>(field, cube_box(1.0), resolution, made.plain, {}, tile).step;
   made.even = made.plain;
   made.statistics = even_mesh(field, made.step, made.even, {});
   return made;
@@ -211,7 +211,7 @@ TEST(EvenMesh, VerticesThatDoNotComeBackStay) {
 TEST(EvenMesh, ProgressCanStopIt) {
   RecordedMesh mesh;
   const AnalyticField field = even_test_field(plain_ball, 1.0);
-  const double step = mesh_field(field, cube(1.0), 32, mesh).step;
+  const double step = mesh_field(field, cube_box(1.0), 32, mesh).step;
   EXPECT_THROW(even_mesh(field, step, mesh, [](double, std::string_view) { return false; }), WorkError);
 }
 

@@ -13,7 +13,7 @@ namespace astrolith {
 namespace {
 
 using testing::AnalyticField;
-using testing::cube;
+using testing::cube_box;
 
 // A hollow ball, a torus and two crumbs: with the wall of the cavity, five components.
 double five_components(const Vec3d& p) {
@@ -29,12 +29,12 @@ const AnalyticField kFiveComponents(five_components, 1.0);
 
 TriangleMesh kept(double least_share, std::int64_t* dropped = nullptr, int resolution = 60) {
   ComponentSizes sizes;
-  mesh_field(kFiveComponents, cube(1.0), resolution, sizes);
+  mesh_field(kFiveComponents, cube_box(1.0), resolution, sizes);
   const ComponentChoice choice = sizes.larger_than(least_share);
   if (dropped != nullptr) *dropped = choice.dropped_components;
   MeshCollector collector;
   ComponentFilter filter(choice, collector);
-  mesh_field(kFiveComponents, cube(1.0), resolution, filter);
+  mesh_field(kFiveComponents, cube_box(1.0), resolution, filter);
   filter.finish();
   return std::move(collector.mesh);
 }
@@ -55,7 +55,7 @@ TEST(MeshComponents, SmallComponentsAreDroppedAndTheOthersStayTheSame) {
     EXPECT_EQ(topology.unused_vertices, 0);
   }
   MeshCollector whole;
-  mesh_field(kFiveComponents, cube(1.0), 60, whole);
+  mesh_field(kFiveComponents, cube_box(1.0), 60, whole);
   const TriangleMesh all = kept(0.0);
   EXPECT_EQ(all.vertices, whole.mesh.vertices);
   EXPECT_EQ(all.triangles, whole.mesh.triangles);
@@ -63,10 +63,10 @@ TEST(MeshComponents, SmallComponentsAreDroppedAndTheOthersStayTheSame) {
 
 TEST(MeshComponents, TheKeptMeshIsAStreamAgain) {
   ComponentSizes sizes;
-  mesh_field(kFiveComponents, cube(1.0), 120, sizes);
+  mesh_field(kFiveComponents, cube_box(1.0), 120, sizes);
   ManifoldCheck check;
   ComponentFilter filter(sizes.larger_than(0.01), check);
-  mesh_field(kFiveComponents, cube(1.0), 120, filter);
+  mesh_field(kFiveComponents, cube_box(1.0), 120, filter);
   filter.finish();
   const ManifoldReport report = check.finish();
   EXPECT_TRUE(report.closed() && report.manifold());
@@ -87,7 +87,7 @@ TEST(MeshComponents, ArmsThatJoinLateAreOnePiece) {
       },
       1.5);
   ComponentSizes sizes;
-  mesh_field(comb, cube(1.0), 64, sizes);
+  mesh_field(comb, cube_box(1.0), 64, sizes);
   const ComponentChoice choice = sizes.larger_than(1.0);
   EXPECT_EQ(choice.dropped_components, 0);
   EXPECT_GE(choice.keep.size(), 3u);
@@ -113,8 +113,8 @@ TEST(ManifoldCheck, AgreesWithTheTopologyOfTheWholeMeshWhileItStreams) {
   const AnalyticField field(tubes, 1.6);
   MeshCollector collector;
   ManifoldCheck check;
-  mesh_field(field, cube(1.0), 60, collector);
-  mesh_field(field, cube(1.0), 60, check);
+  mesh_field(field, cube_box(1.0), 60, collector);
+  mesh_field(field, cube_box(1.0), 60, check);
   const ManifoldReport report = check.finish();
   const MeshTopology topology = analyze_topology(collector.mesh);
   EXPECT_TRUE(report.closed() && report.manifold());

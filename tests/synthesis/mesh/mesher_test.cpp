@@ -16,7 +16,7 @@ namespace astrolith {
 namespace {
 
 using testing::AnalyticField;
-using testing::cube;
+using testing::cube_box;
 
 TriangleMesh checked_mesh(const MeshStatistics& statistics, MeshCollector& collector) {
   EXPECT_EQ(statistics.vertices, static_cast<std::int64_t>(collector.mesh.vertices.size()));
@@ -90,7 +90,7 @@ double gyroid_sphere(const Vec3d& p) {
 constexpr double kGyroidLipschitz = 1.5;  // 0.06 * 12 * sqrt(3) < 1.25
 
 TEST(Mesher, SphereHasItsTopologyVolumeAndNormals) {
-  const TriangleMesh mesh = make_mesh(make_field(unit_sphere, 1.0), cube(1.0), 64);
+  const TriangleMesh mesh = make_mesh(make_field(unit_sphere, 1.0), cube_box(1.0), 64);
   const MeshTopology topology = expect_closed_manifold(mesh);
   EXPECT_EQ(topology.components, 1);
   EXPECT_EQ(topology.genus, 0);
@@ -106,7 +106,7 @@ TEST(Mesher, SphereHasItsTopologyVolumeAndNormals) {
 TEST(Mesher, VolumeAndAreaConvergeWithTheSquareOfTheStep) {
   double volume_error = 0.0, area_error = 0.0;
   for (const int resolution : {18, 34, 66}) {
-    const TriangleMesh mesh = make_mesh(make_field(unit_sphere, 1.0), cube(1.0), resolution);
+    const TriangleMesh mesh = make_mesh(make_field(unit_sphere, 1.0), cube_box(1.0), resolution);
     const double v = std::abs(volume(mesh) - 4.0 / 3.0 * std::numbers::pi);
     const double a = std::abs(surface_area(mesh) - 4.0 * std::numbers::pi);
     if (resolution != 18) {
@@ -119,11 +119,12 @@ TEST(Mesher, VolumeAndAreaConvergeWithTheSquareOfTheStep) {
 }
 
 TEST(Mesher, GenusAndComponentsOfKnownBodies) {
-  EXPECT_EQ(expect_closed_manifold(make_mesh(make_field(torus, 1.0), cube(1.0), 40)).genus, 1);
-  const MeshTopology pair = expect_closed_manifold(make_mesh(make_field(two_spheres, 1.0), cube(1.0), 40));
+  EXPECT_EQ(expect_closed_manifold(make_mesh(make_field(torus, 1.0), cube_box(1.0), 40)).genus, 1);
+  const MeshTopology pair =
+      expect_closed_manifold(make_mesh(make_field(two_spheres, 1.0), cube_box(1.0), 40));
   EXPECT_EQ(pair.components, 2);
   EXPECT_EQ(pair.euler_characteristic, 4);
-  const TriangleMesh hollow = make_mesh(make_field(shell, 1.0), cube(1.0), 64);
+  const TriangleMesh hollow = make_mesh(make_field(shell, 1.0), cube_box(1.0), 64);
   EXPECT_EQ(expect_closed_manifold(hollow).components, 2);
   const double expected = 4.0 / 3.0 * std::numbers::pi * (std::pow(0.95, 3) - std::pow(0.55, 3));
   EXPECT_NEAR(volume(hollow), expected, 0.01);
@@ -131,7 +132,7 @@ TEST(Mesher, GenusAndComponentsOfKnownBodies) {
 
 TEST(Mesher, StatisticsAgreeWithTheMesh) {
   MeshCollector collector;
-  const MeshStatistics statistics = mesh_field(make_field(torus, 1.0), cube(1.0), 48, collector);
+  const MeshStatistics statistics = mesh_field(make_field(torus, 1.0), cube_box(1.0), 48, collector);
   EXPECT_EQ(statistics.euler_characteristic(), analyze_topology(collector.mesh).euler_characteristic);
   EXPECT_GT(statistics.active_blocks, 0);
   EXPECT_LT(statistics.active_blocks, statistics.total_blocks);
@@ -141,17 +142,17 @@ TEST(Mesher, StatisticsAgreeWithTheMesh) {
 
 TEST(Mesher, SameBytesForAnyThreadsBlocksAndBounds) {
   const auto field = make_field(gyroid_sphere, kGyroidLipschitz);
-  const TriangleMesh reference = make_mesh(field, cube(1.0), 77);
+  const TriangleMesh reference = make_mesh(field, cube_box(1.0), 77);
   EXPECT_GT(expect_closed_manifold(reference).genus, 10);
   for (const int threads : {1, 2, 4}) {
     const ThreadLimit limit(threads);
-    EXPECT_TRUE(same_bytes(reference, make_mesh(field, cube(1.0), 77))) << threads << " threads";
+    EXPECT_TRUE(same_bytes(reference, make_mesh(field, cube_box(1.0), 77))) << threads << " threads";
   }
-  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<4>(field, cube(1.0), 77)));
-  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<5>(field, cube(1.0), 77)));
-  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<16>(field, cube(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<4>(field, cube_box(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<5>(field, cube_box(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<16>(field, cube_box(1.0), 77)));
   const AnalyticField never_culled(gyroid_sphere);
-  EXPECT_TRUE(same_bytes(reference, make_mesh(never_culled, cube(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, make_mesh(never_culled, cube_box(1.0), 77)));
 }
 
 // All tiles in one mesh. Vertices of a cut, which two tiles share, become one vertex.
@@ -160,8 +161,8 @@ TriangleMesh joined_tiles(const AnalyticField& field, int resolution, int count)
   for (int i = 0; i < count; ++i) {
     MeshCollector tile;
     ManifoldCheck check;
-    const MeshStatistics statistics = mesh_field(field, cube(1.0), resolution, tile, {}, {i, count});
-    mesh_field(field, cube(1.0), resolution, check, {}, {i, count});
+    const MeshStatistics statistics = mesh_field(field, cube_box(1.0), resolution, tile, {}, {i, count});
+    mesh_field(field, cube_box(1.0), resolution, check, {}, {i, count});
     EXPECT_EQ(check.finish().open_vertices, statistics.cut_vertices);
     const auto first = static_cast<std::uint32_t>(all.vertices.size());
     all.vertices.insert(all.vertices.end(), tile.mesh.vertices.begin(), tile.mesh.vertices.end());
@@ -175,7 +176,7 @@ TriangleMesh joined_tiles(const AnalyticField& field, int resolution, int count)
 
 TEST(Mesher, TilesJoinToTheWholeMeshBitByBit) {
   const auto field = make_field(gyroid_sphere, kGyroidLipschitz);
-  const TriangleMesh whole = make_mesh(field, cube(1.0), 77);
+  const TriangleMesh whole = make_mesh(field, cube_box(1.0), 77);
   for (const int count : {1, 2, 3, 10}) {
     EXPECT_TRUE(same_bytes(whole, joined_tiles(field, 77, count))) << count << " tiles";
   }
@@ -185,7 +186,7 @@ TEST(Mesher, TilesThatThereAreNotAreInputErrors) {
   MeshCollector sink;
   const auto field = make_field(unit_sphere, 1.0);
   for (const MeshTile tile : {MeshTile{0, 0}, {2, 2}, {-1, 2}, {0, 9}}) {
-    EXPECT_THROW(mesh_field(field, cube(1.0), 64, sink, {}, tile), InputError);
+    EXPECT_THROW(mesh_field(field, cube_box(1.0), 64, sink, {}, tile), InputError);
   }
 }
 
@@ -232,7 +233,7 @@ TEST(Mesher, PatchesAreOpenOnlyWhereCutWhateverTheBlocks) {
 }
 
 TEST(Mesher, PatchesHaveTheVerticesOfTheWholeMeshOnItsGrid) {
-  const TriangleMesh whole = make_mesh(make_field(gyroid_sphere, kGyroidLipschitz), cube(1.0), 66);
+  const TriangleMesh whole = make_mesh(make_field(gyroid_sphere, kGyroidLipschitz), cube_box(1.0), 66);
   const TriangleMesh patch = gyroid_patch();
   std::vector<Vec3d> inside;
   for (const Vec3d& p : whole.vertices) {
@@ -264,7 +265,7 @@ void expect_ties_handled(const AnalyticField::Function& function) {
     const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     return reach > kTieHalfSide ? -1.0 : function(p);
   };
-  const TriangleMesh mesh = make_mesh(AnalyticField(inside_box), cube(kTieHalfSide), kTieResolution);
+  const TriangleMesh mesh = make_mesh(AnalyticField(inside_box), cube_box(kTieHalfSide), kTieResolution);
   ASSERT_GT(mesh.triangles.size(), 0u);
   expect_closed_manifold(mesh);
   EXPECT_EQ(coincident_vertices(mesh), 0);
@@ -303,26 +304,26 @@ TEST(Mesher, ValuesThatAreNotFiniteStayHarmless) {
 }
 
 TEST(Mesher, AnEmptyFieldIsAnEmptyMesh) {
-  const TriangleMesh mesh = make_mesh(AnalyticField([](const Vec3d&) { return -1.0; }), cube(1.0), 32);
+  const TriangleMesh mesh = make_mesh(AnalyticField([](const Vec3d&) { return -1.0; }), cube_box(1.0), 32);
   EXPECT_TRUE(mesh.vertices.empty() && mesh.triangles.empty());
 }
 
 TEST(Mesher, BrokenPromisesAreErrorsAndNeverHoles) {
   MeshCollector sink;
   // The bounds cut the body; in the second case culling even proves whole blocks at the border full.
-  EXPECT_THROW(mesh_field(AnalyticField(unit_sphere), cube(0.5), 32, sink), WorkError);
-  EXPECT_THROW(mesh_field(make_field(unit_sphere, 1.0), cube(0.3), 64, sink), WorkError);
+  EXPECT_THROW(mesh_field(AnalyticField(unit_sphere), cube_box(0.5), 32, sink), WorkError);
+  EXPECT_THROW(mesh_field(make_field(unit_sphere, 1.0), cube_box(0.3), 64, sink), WorkError);
   // A bound that is too tight discards blocks that the surface crosses.
-  EXPECT_THROW(mesh_field(make_field(unit_sphere, 0.2), cube(1.0), 64, sink), WorkError);
+  EXPECT_THROW(mesh_field(make_field(unit_sphere, 0.2), cube_box(1.0), 64, sink), WorkError);
 }
 
 TEST(Mesher, BadResolutionsAndBoundsAreInputErrors) {
   MeshCollector sink;
   const auto field = make_field(unit_sphere, 1.0);
-  EXPECT_THROW(mesh_field(field, cube(1.0), 3, sink), InputError);
-  EXPECT_THROW(mesh_field(field, cube(1.0), 100000, sink), InputError);
+  EXPECT_THROW(mesh_field(field, cube_box(1.0), 3, sink), InputError);
+  EXPECT_THROW(mesh_field(field, cube_box(1.0), 100000, sink), InputError);
   EXPECT_THROW(mesh_field(field, Box{}, 32, sink), InputError);
-  EXPECT_THROW(mesh_field(field, cube(0.0), 32, sink), InputError);
+  EXPECT_THROW(mesh_field(field, cube_box(0.0), 32, sink), InputError);
   const Box far_away{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}};
   EXPECT_THROW(mesh_field(field, far_away, 256, sink), InputError);
   EXPECT_THROW(mesh_patch(field, 0.0, 64, sink), InputError);
@@ -332,7 +333,7 @@ TEST(Mesher, BadResolutionsAndBoundsAreInputErrors) {
 TEST(Mesher, StopsWhenAsked) {
   MeshCollector sink;
   const Progress stop = [](double fraction, std::string_view) { return fraction < 0.5; };
-  EXPECT_THROW(mesh_field(make_field(unit_sphere, 1.0), cube(1.0), 64, sink, stop), WorkError);
+  EXPECT_THROW(mesh_field(make_field(unit_sphere, 1.0), cube_box(1.0), 64, sink, stop), WorkError);
 }
 
 }  // namespace

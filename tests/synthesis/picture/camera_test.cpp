@@ -17,7 +17,7 @@ constexpr double kPerDegree = std::numbers::pi / 180.0;
 TriangleMesh ball(double radius, const Vec3d& center) {
   MeshCollector collector;
   mesh_field(testing::AnalyticField([&](const Vec3d& p) { return radius - norm(p); }, 1.0),
-             testing::cube(1.01 * radius), 32, collector);
+             testing::cube_box(1.01 * radius), 32, collector);
   for (Vec3d& p : collector.mesh.vertices) p += center;
   return std::move(collector.mesh);
 }

@@ -17,11 +17,11 @@ namespace astrolith {
 namespace {
 
 using testing::AnalyticField;
-using testing::cube;
+using testing::cube_box;
 
 TriangleMesh sphere_mesh() {
   MeshCollector collector;
-  mesh_field(AnalyticField([](const Vec3d& p) { return 1.0 - norm(p); }, 1.0), cube(1.0), 40, collector);
+  mesh_field(AnalyticField([](const Vec3d& p) { return 1.0 - norm(p); }, 1.0), cube_box(1.0), 40, collector);
   return std::move(collector.mesh);
 }
 
@@ -76,7 +76,7 @@ TEST(Preview, BodiesCastShadows) {
   // A small sphere between the sun (left) and a large one.
   const auto two = [](const Vec3d& p) { return std::max(0.5 - norm(p), 0.2 - norm(p - Vec3d{0, -0.8, 0})); };
   MeshCollector collector;
-  mesh_field(AnalyticField(two, 1.0), cube(1.01), 64, collector);
+  mesh_field(AnalyticField(two, 1.0), cube_box(1.01), 64, collector);
   PreviewOptions options = one_view();
   options.width = options.height = 256;
   options.sun.direction = {-1, 0, 0};
@@ -238,9 +238,9 @@ TEST(PictureMarks, LabelsFollowTheirPlaces) {
   const auto middle = [&](const char* camera) {
     options.views = {parse_camera("--camera", camera)};
     options.marks.labels.clear();
-    const RgbaImage16 without = render_picture(mesh, options).image;
+    const RgbaImage16 without = render_picture(mesh, options).marked();
     options.marks.labels = {{mesh.vertices[4], "9"}};
-    return change_middle(render_picture(mesh, options).image, without);
+    return change_middle(render_picture(mesh, options).marked(), without);
   };
   for (const std::string kind : {"", " fov 20"}) {
     const std::string above = "from 0 0 1 up 0 1 0" + kind;
@@ -263,11 +263,11 @@ TEST(PictureMarks, LabelsStandBesidePlacesThatAreSeen) {
   for (const char* camera :
        {"from 0 0 1 up 0 1 0", "lat 90 fov 30", "from 0 0 1 up 0 1 0 fov 20 target 1 0 0"}) {
     options.views = {parse_camera("--camera", camera)};
-    const std::vector<std::uint16_t> without = render_picture(mesh, options).image.pixels;
+    const std::vector<std::uint16_t> without = render_picture(mesh, options).marked().pixels;
     options.marks.labels = {{mesh.vertices[5], "9"}};
-    EXPECT_TRUE(render_picture(mesh, options).image.pixels == without) << camera;
+    EXPECT_TRUE(render_picture(mesh, options).marked().pixels == without) << camera;
     options.marks.labels = {{mesh.vertices[4], "9"}};
-    EXPECT_FALSE(render_picture(mesh, options).image.pixels == without) << camera;
+    EXPECT_FALSE(render_picture(mesh, options).marked().pixels == without) << camera;
     options.marks.labels.clear();
   }
 }
@@ -283,7 +283,8 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   const int strip = marks_height(marked);
   ASSERT_GT(strip, 0);
   plain.height -= strip;
-  const RgbaImage16 without = render_picture(mesh, plain).image, with = render_picture(mesh, marked).image;
+  const RgbaImage16 without = render_picture(mesh, plain).marked(),
+                    with = render_picture(mesh, marked).marked();
   ASSERT_GT(with.pixels.size(), without.pixels.size());
   EXPECT_TRUE(std::equal(without.pixels.begin(), without.pixels.end(), with.pixels.begin()));
   const auto bright = [&](const RgbaImage16& image) {
@@ -293,7 +294,7 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   EXPECT_GT(bright(with), 300) << "bars and letters";
 
   marked.marks.axes = true;
-  const RgbaImage16 axes = render_picture(mesh, marked).image;
+  const RgbaImage16 axes = render_picture(mesh, marked).marked();
   int changed = 0, over_body = 0;
   for (std::size_t i = 0; i < without.pixels.size(); i += 4) {
     if (axes.pixels[i] == with.pixels[i] && axes.pixels[i + 2] == with.pixels[i + 2]) continue;

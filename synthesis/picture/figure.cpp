@@ -1,4 +1,4 @@
-#include "estimation/plot/figure.h"
+#include "synthesis/picture/figure.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -11,13 +11,16 @@
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
 
+double log10(double x) { return portable::log(x) / std::numbers::ln10; }
+
 // The smallest of 2, 5 and 10 times a power of ten that is larger than a fifth of the extent.
 double round_step(double extent) {
-  const double raw = extent / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double raw = extent / 5.0, power = portable::pow(10.0, std::floor(log10(raw)));
   return power * (raw / power < 2.0 ? 2.0 : raw / power < 5.0 ? 5.0 : 10.0);
 }
 
@@ -25,7 +28,7 @@ double round_step(double extent) {
 double round_value(int k) {
   constexpr double kMantissas[] = {1.0, 2.0, 5.0};
   const int decade = k >= 0 ? k / 3 : -((2 - k) / 3);
-  return kMantissas[k - 3 * decade] * std::pow(10.0, decade);
+  return kMantissas[k - 3 * decade] * portable::pow(10.0, decade);
 }
 
 constexpr double kTickLength = 3.0;
@@ -75,9 +78,21 @@ void select_font(cairo_t* c, double size, bool bold) {
   cairo_set_font_size(c, size);
 }
 
-void require_success(cairo_status_t status, const std::filesystem::path& file) {
+void require_success(cairo_status_t status, const std::string& name) {
   if (status == CAIRO_STATUS_SUCCESS) return;
-  throw WorkError(file.string() + ": the figure could not be drawn (" + cairo_status_to_string(status) + ")");
+  throw WorkError(name + ": the figure could not be drawn (" + cairo_status_to_string(status) + ")");
+}
+
+// Lays a pixel of Cairo, multiplied by its alpha, over one of 16 bits.
+void lay_over(std::uint32_t argb, std::uint16_t* pixel) {
+  const std::uint32_t alpha = argb >> 24;
+  if (alpha == 0) return;
+  const double over = alpha / 255.0, below = (1.0 - over) * pixel[3] / 65535.0, cover = over + below;
+  for (unsigned k = 0; k < 3; ++k) {
+    const double value = (argb >> (16 - 8 * k) & 0xffu) / 255.0;
+    pixel[k] = static_cast<std::uint16_t>((65535.0 * value + below * pixel[k]) / cover + 0.5);
+  }
+  pixel[3] = static_cast<std::uint16_t>(65535.0 * cover + 0.5);
 }
 
 }  // namespace
@@ -94,13 +109,13 @@ Axis linear_axis(double low, double high, const std::string& label, double small
 
 Axis logarithmic_axis(double low, double high, const std::string& label) {
   constexpr double kRounding = 1.0 + 1e-9;
-  int first = 3 * static_cast<int>(std::floor(std::log10(low)));
+  int first = 3 * static_cast<int>(std::floor(log10(low)));
   while (round_value(first + 1) <= low * kRounding) ++first;
   int last = first + 1;
   while (round_value(last) * kRounding < high) ++last;
-  Axis axis{std::log10(round_value(first)), std::log10(round_value(last)), {}, label};
+  Axis axis{log10(round_value(first)), log10(round_value(last)), {}, label};
   for (int k = first; k <= last; ++k) {
-    axis.ticks.emplace_back(std::log10(round_value(k)), fmt::format("{:g}", round_value(k)));
+    axis.ticks.emplace_back(log10(round_value(k)), fmt::format("{:g}", round_value(k)));
   }
   return axis;
 }
@@ -116,12 +131,12 @@ double place_along_y(double value, const Axis& axis, const Rectangle& at) {
 void Figure::Free::operator()(cairo_t* context) const { cairo_destroy(context); }
 void Figure::Free::operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
 
-Figure::Figure(double width, double height) : width_(width), height_(height) {
+Figure::Figure(double width, double height, Paper paper) : width_(width), height_(height) {
   // Text is measured as on a page of points, whose glyphs no grid of pixels moves.
   const std::unique_ptr<cairo_surface_t, Free> points(
       cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
   measure_.reset(cairo_create(points.get()));
-  draw([](cairo_t* c) { cairo_paint(c); }, {1.0, 1.0, 1.0});
+  if (paper == Paper::kWhite) draw([](cairo_t* c) { cairo_paint(c); }, {1.0, 1.0, 1.0});
 }
 
 void Figure::draw(std::function<void(cairo_t*)> step, const Ink& ink) {
@@ -191,16 +206,47 @@ void Figure::picture(const Rectangle& at, int width, int height, std::span<const
     }
   }
   cairo_surface_mark_dirty(image.get());
+  this->image(at, image, smooth);
+}
+
+void Figure::image(const Rectangle& at, const std::shared_ptr<cairo_surface_t>& pixels, bool smooth) {
   draw([=](cairo_t* c) {
+    const int width = cairo_image_surface_get_width(pixels.get()),
+              height = cairo_image_surface_get_height(pixels.get());
     cairo_rectangle(c, at.x, at.y, at.width, at.height);
     cairo_clip(c);
     cairo_translate(c, at.x, at.y);
     cairo_scale(c, at.width / width, at.height / height);
-    cairo_set_source_surface(c, image.get(), 0.0, 0.0);
+    cairo_set_source_surface(c, pixels.get(), 0.0, 0.0);
     cairo_pattern_set_filter(cairo_get_source(c), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
     cairo_pattern_set_extend(cairo_get_source(c), CAIRO_EXTEND_PAD);
     cairo_paint(c);
   });
+}
+
+void Figure::picture(const Rectangle& at, const RgbaImage16& given) {
+  const std::shared_ptr<cairo_surface_t> pixels(
+      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, given.width, given.height), Free{});
+  unsigned char* data = cairo_image_surface_get_data(pixels.get());
+  if (data == nullptr) throw WorkError("figure: a picture is too large to be drawn");
+  const std::vector<std::uint8_t> rgba = rgba_bytes(given);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(pixels.get()));
+  std::size_t i = 0;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(given.height); ++y) {
+    auto* row = reinterpret_cast<std::uint32_t*>(data + y * stride);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(given.width); ++x, i += 4) {
+      const std::uint32_t alpha = rgba[i + 3];
+      const auto times_alpha = [&](std::uint32_t value) { return (value * alpha + 127) / 255; };
+      row[x] =
+          alpha << 24 | times_alpha(rgba[i]) << 16 | times_alpha(rgba[i + 1]) << 8 | times_alpha(rgba[i + 2]);
+    }
+  }
+  cairo_surface_mark_dirty(pixels.get());
+  image(at, pixels, false);
+}
+
+void Figure::add(const Figure& other) {
+  steps_.insert(steps_.end(), other.steps_.begin(), other.steps_.end());
 }
 
 void Figure::picture(const Rectangle& at, const RgbImage& image, bool smooth) {
@@ -277,6 +323,18 @@ void Figure::curve(const Rectangle& at, const Axis& x, const Axis& y,
       ink);
 }
 
+void Figure::path(const std::vector<std::pair<double, double>>& points, double width, const Ink& ink) {
+  draw(
+      [=](cairo_t* c) {
+        cairo_set_line_width(c, width);
+        cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+        cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
+        for (const auto& [x, y] : points) cairo_line_to(c, x, y);
+        cairo_stroke(c);
+      },
+      ink);
+}
+
 void Figure::circle(const Rectangle& inside, double x, double y, double radius, double line_width,
                     const Ink& ink) {
   draw(
@@ -290,11 +348,33 @@ void Figure::circle(const Rectangle& inside, double x, double y, double radius, 
       ink);
 }
 
-void Figure::draw_on(cairo_surface_t* page, double scale, const std::filesystem::path& file) const {
+void Figure::draw_on(cairo_surface_t* page, double scale, const std::string& name) const {
   const std::unique_ptr<cairo_t, Free> c(cairo_create(page));
   cairo_scale(c.get(), scale, scale);
   for (const auto& step : steps_) step(c.get());
-  require_success(cairo_status(c.get()), file);
+  require_success(cairo_status(c.get()), name);
+}
+
+// Bands of rows, so that a large picture needs no second one beside it.
+void Figure::draw_over(RgbaImage16& image) const {
+  if (steps_.empty()) return;
+  constexpr int kBand = 256;
+  for (int first = 0; first < image.height; first += kBand) {
+    const int rows = std::min(kBand, image.height - first);
+    const std::unique_ptr<cairo_surface_t, Free> band(
+        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.width, rows));
+    cairo_surface_set_device_offset(band.get(), 0.0, -first);
+    draw_on(band.get(), 1.0, "picture");
+    cairo_surface_flush(band.get());
+    const unsigned char* data = cairo_image_surface_get_data(band.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(band.get()));
+    for (int y = 0; y < rows; ++y) {
+      const auto* row = reinterpret_cast<const std::uint32_t*>(data + static_cast<std::size_t>(y) * stride);
+      std::uint16_t* pixel =
+          &image.pixels[4 * static_cast<std::size_t>(first + y) * static_cast<std::size_t>(image.width)];
+      for (int x = 0; x < image.width; ++x, pixel += 4) lay_over(row[x], pixel);
+    }
+  }
 }
 
 void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch) const {
@@ -302,31 +382,34 @@ void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch
   const std::unique_ptr<cairo_surface_t, Free> page(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)),
                                  static_cast<int>(std::lround(height_ * scale))));
-  draw_on(page.get(), scale, file);
+  draw_on(page.get(), scale, file.string());
   OutputFile out(file);
-  require_success(cairo_surface_write_to_png_stream(page.get(), append, &out), file);
+  require_success(cairo_surface_write_to_png_stream(page.get(), append, &out), file.string());
   out.commit();
 }
 
-void Figure::write_svg(const std::filesystem::path& file) const {
-  write_vectors(file, [](OutputFile& out, double width, double height) {
+void Figure::write_svg(const std::filesystem::path& file, double points) const {
+  write_vectors(file, points, [](OutputFile& out, double width, double height) {
     return cairo_svg_surface_create_for_stream(append, &out, width, height);
   });
 }
 
-void Figure::write_pdf(const std::filesystem::path& file) const {
-  write_vectors(file, [](OutputFile& out, double width, double height) {
-    return cairo_pdf_surface_create_for_stream(append, &out, width, height);
+// The file names no time, so that its bytes are the same on every run.
+void Figure::write_pdf(const std::filesystem::path& file, double points) const {
+  write_vectors(file, points, [](OutputFile& out, double width, double height) {
+    cairo_surface_t* page = cairo_pdf_surface_create_for_stream(append, &out, width, height);
+    cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    return page;
   });
 }
 
-void Figure::write_vectors(const std::filesystem::path& file, VectorPage* make) const {
+void Figure::write_vectors(const std::filesystem::path& file, double points, VectorPage* make) const {
   OutputFile out(file);
   {
-    const std::unique_ptr<cairo_surface_t, Free> page(make(out, width_, height_));
-    draw_on(page.get(), 1.0, file);
+    const std::unique_ptr<cairo_surface_t, Free> page(make(out, width_ / points, height_ / points));
+    draw_on(page.get(), 1.0 / points, file.string());
     cairo_surface_finish(page.get());
-    require_success(cairo_surface_status(page.get()), file);
+    require_success(cairo_surface_status(page.get()), file.string());
   }
   out.commit();
 }

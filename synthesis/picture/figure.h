@@ -1,4 +1,5 @@
-// A page that is drawn once and written as PNG, SVG or PDF: text, pictures, curves and axes.
+// A page that is drawn once and written as PNG, SVG or PDF, or drawn over a picture: text, pictures, curves
+// and axes.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +50,8 @@ struct Ink {
 // All lengths and places are points of the page, its upper left corner is (0, 0).
 class Figure {
  public:
-  Figure(double width, double height);  // a white page
+  enum class Paper { kWhite, kNone };
+  Figure(double width, double height, Paper paper = Paper::kWhite);
 
   enum class Align { kLeft, kCenter, kRight };
   // Text of one size whose baseline lies at y; x is its left end, middle or right end.
@@ -60,6 +62,7 @@ class Figure {
   // rgb: row-major (height x width x 3), sRGB; stretched over `at`. `smooth` suits photos, blocks suit grids.
   void picture(const Rectangle& at, int width, int height, std::span<const std::uint8_t> rgb, bool smooth);
   void picture(const Rectangle& at, const RgbImage& image, bool smooth);
+  void picture(const Rectangle& at, const RgbaImage16& image);  // in 8 bits, with its coverage
   void fill(const Rectangle& at, const Ink& ink);
   void frame(const Rectangle& at);
   void line(double x0, double y0, double x1, double y1, double width, const Ink& ink = {});
@@ -69,16 +72,27 @@ class Figure {
   // A curve through points in axis units; at most 60 points are marked by dots.
   void curve(const Rectangle& at, const Axis& x, const Axis& y,
              const std::vector<std::pair<double, double>>& points, const Ink& ink);
+  void path(const std::vector<std::pair<double, double>>& points, double width, const Ink& ink);
   // A circle, cut off at the border of `inside`.
   void circle(const Rectangle& inside, double x, double y, double radius, double line_width, const Ink& ink);
+
+  // Draws all of another page over this one.
+  void add(const Figure& other);
 
   double width() const { return width_; }
   double height() const { return height_; }
 
-  // Each throws InputError where the file cannot be written, WorkError where the page cannot be drawn.
+  // What text of a size is wide.
+  double text_width(const std::string& text, double size, bool bold = false) const;
+
+  // Draws the page over a picture, whose pixels are its points.
+  void draw_over(RgbaImage16& image) const;
+
+  // Each throws InputError where the file cannot be written, WorkError where the page cannot be drawn. A page
+  // of vectors has so many of its points in a point of 1/72 inch.
   void write_png(const std::filesystem::path& file, double pixels_per_inch) const;
-  void write_svg(const std::filesystem::path& file) const;
-  void write_pdf(const std::filesystem::path& file) const;
+  void write_svg(const std::filesystem::path& file, double points = 1.0) const;
+  void write_pdf(const std::filesystem::path& file, double points = 1.0) const;
 
  private:
   using VectorPage = _cairo_surface*(OutputFile& out, double width, double height);
@@ -88,9 +102,10 @@ class Figure {
   void draw(std::function<void(_cairo*)> step, const Ink& ink = {});
   void text(double x, double y, double angle, const std::string& words, double size, Align align, bool bold,
             const Ink& ink);
-  double text_width(const std::string& words, double size, bool bold = false) const;  // of valid UTF-8
-  void draw_on(_cairo_surface* page, double scale, const std::filesystem::path& file) const;
-  void write_vectors(const std::filesystem::path& file, VectorPage* make) const;
+  void image(const Rectangle& at, const std::shared_ptr<_cairo_surface>& pixels, bool smooth);
+  // `name` begins the message of an error.
+  void draw_on(_cairo_surface* page, double scale, const std::string& name) const;
+  void write_vectors(const std::filesystem::path& file, double points, VectorPage* make) const;
 
   struct Free {
     void operator()(_cairo* context) const;

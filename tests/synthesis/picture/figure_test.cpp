@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "estimation/plot/figure.h"
 #include "numerics/errors.h"
+#include "synthesis/picture/figure.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {
@@ -35,6 +35,37 @@ TEST(Figure, DrawsTextThatIsNotUtf8) {
 TEST(Figure, RefusesFilesThatCannotBeWritten) {
   const testing::ScratchFolder folder;
   EXPECT_THROW(Figure(10.0, 10.0).write_png(folder / "missing" / "page.png", 72.0), InputError);
+}
+
+TEST(Figure, LiesOverAPictureOfSixteenBits) {
+  RgbaImage16 image{4, 600, std::vector<std::uint16_t>(4 * 4 * 600, 12345)};
+  Figure page(4.0, 600.0, Figure::Paper::kNone);
+  page.fill({1.0, 2.0, 2.0, 596.0}, {1.0, 0.0, 0.0});
+  page.draw_over(image);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint16_t* pixel = &image.pixels[static_cast<std::size_t>(4 * (4 * y + x))];
+      const bool inside = x >= 1 && x < 3 && y >= 2 && y < 598;
+      ASSERT_EQ(pixel[0], inside ? 65535 : 12345) << x << " " << y;
+      ASSERT_EQ(pixel[3], inside ? 65535 : 12345) << x << " " << y;
+    }
+  }
+}
+
+TEST(Figure, WritesPagesOfVectorsThatStayTheSame) {
+  const testing::ScratchFolder folder;
+  Figure page(100.0, 50.0);
+  page.picture({0.0, 0.0, 50.0, 50.0}, RgbaImage16{2, 1, {0, 0, 0, 65535, 65535, 0, 0, 32768}});
+  page.text(5.0, 20.0, "slope [\u00b0]", 10.0);
+  for (const std::string name : {"first", "second"}) {
+    page.write_pdf(folder / (name + ".pdf"));
+    page.write_svg(folder / (name + ".svg"), 2.0);
+  }
+  const std::string pdf = testing::read_text(folder / "first.pdf"),
+                    svg = testing::read_text(folder / "first.svg");
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  EXPECT_EQ(pdf, testing::read_text(folder / "second.pdf"));
+  EXPECT_NE(svg.find("width=\"50pt\""), std::string::npos);
 }
 
 std::string tick_texts(const Axis& axis) {
