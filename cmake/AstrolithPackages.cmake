@@ -11,6 +11,7 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)               # command lines
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # .ply.zst
+find_package(ZLIB REQUIRED)                # meshes in .gz
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # NPZ
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)  # PNG
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # text and lines of pictures

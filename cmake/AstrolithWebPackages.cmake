@@ -9,7 +9,7 @@ foreach(library nlohmann fmt)
   file(CREATE_LINK ${${library}_parent}/${library} ${header_folder}/${library} SYMBOLIC)
 endforeach()
 
-foreach(target TBB::tbb nlohmann_json::nlohmann_json fmt::fmt OpenSSL::Crypto PkgConfig::ZSTD embree OpenMeshCore OpenMeshTools
+foreach(target TBB::tbb nlohmann_json::nlohmann_json fmt::fmt OpenSSL::Crypto PkgConfig::ZSTD ZLIB::ZLIB embree OpenMeshCore OpenMeshTools
     Eigen3::Eigen nanoflann::nanoflann PkgConfig::SPNG TIFF::TIFF)
   add_library(${target} INTERFACE IMPORTED GLOBAL)
 endforeach()

@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build pkg-config python3
   libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
-  libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libcairo2-dev libzip-dev libzstd-dev
+  libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libcairo2-dev libzip-dev libzstd-dev zlib1g-dev
   libgtest-dev
 )
 fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libspectra-dev libcgal-dev libjs-three)

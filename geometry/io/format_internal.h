@@ -32,7 +32,7 @@ struct MeshFile {
   [[noreturn]] void fail(std::string_view place, std::string_view what, std::string_view remedy) const;
 };
 
-// Reads the whole file, and unpacks Zstandard, to at most 100 times the file's size. Throws
+// Reads the whole file, and unpacks Zstandard and gzip, to at most 100 times the file's size. Throws
 // InputError when it is missing, empty, a folder, or not a plain file.
 MeshFile load_mesh_file(const std::filesystem::path& path);
 

@@ -5,6 +5,7 @@
 
 #include "geometry/io/format_internal.h"
 #include "geometry/io/pds_label_internal.h"
+#include "numerics/files/gzip_stream.h"
 #include "numerics/files/input_file.h"
 #include "numerics/files/zstd_stream.h"
 
@@ -23,7 +24,8 @@ namespace {
 void unpack(MeshFile& file) {
   constexpr std::uint64_t kMostGrowth = 100;
   try {
-    file.bytes = unpack_zstd(file.bytes, kMostGrowth * file.bytes.size());
+    const std::uint64_t most = kMostGrowth * file.bytes.size();
+    file.bytes = is_gzip(file.bytes) ? unpack_gzip(file.bytes, most) : unpack_zstd(file.bytes, most);
   } catch (const InputError& e) {
     throw InputError(file.path.string() + ": " + e.what());
   }
@@ -54,7 +56,7 @@ MeshFile load_mesh_file(const std::filesystem::path& path) {
   in.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
   if (in.bad()) file.fail("", "reading failed", "copy it to another disk");
   file.bytes.resize(static_cast<std::size_t>(in.gcount()));
-  if (is_zstd(file.bytes)) unpack(file);
+  if (is_zstd(file.bytes) || is_gzip(file.bytes)) unpack(file);
   if (is_utf16(file.bytes)) file.fail("", "its text is UTF-16", "save it as UTF-8 or ASCII");
   blank_label(file);
   return file;

@@ -29,7 +29,6 @@ constexpr OtherFile kOtherFiles[] = {
     {"\x89PNG", "a PNG picture"},
     {"\xff\xd8\xff", "a JPEG picture"},
     {"PK\x03\x04", "a zip archive or a document of an office", "unpack it, or save its table as .csv"},
-    {"\x1f\x8b", "a gzip archive", kUnpack},
     {"BZh", "a bzip2 archive", kUnpack},
     {"\xfd\x37zXZ", "an xz archive", kUnpack},
     {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", kUnpack},
@@ -225,6 +224,10 @@ std::string extensions_with(Member MeshFormat::*member, bool with_words) {
   return list;
 }
 
+bool is_packed(const std::filesystem::path& file) {
+  return file.extension() == ".zst" || file.extension() == ".gz";
+}
+
 std::string remedy() { return "give a mesh (" + read_mesh_words() + ")"; }
 
 // The kind of another file that the content begins as; null where it begins as none.
@@ -275,10 +278,10 @@ std::span<const MeshFormat> mesh_formats() { return kFormats; }
 
 const MeshFormat& written_mesh_format(const std::filesystem::path& file) {
   const std::string extension = mesh_extension(file);
-  const bool packed = file.extension() == ".zst";
+  const bool packed = is_packed(file);
   for (const MeshFormat& format : kFormats) {
     if (format.writer == nullptr || format.extensions[0] != extension) continue;
-    if (!packed || format.streamed) return format;
+    if (!packed || (format.streamed && file.extension() == ".zst")) return format;
   }
   if (packed) throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
   throw InputError(file.string() + ": meshes are written as " + extensions_with(&MeshFormat::writer, false) +
@@ -309,7 +312,7 @@ bool has_readable_extension(const std::filesystem::path& file) {
 }
 
 std::string mesh_extension(const std::filesystem::path& file) {
-  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
+  std::string extension = (is_packed(file) ? file.stem() : file).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return extension;
 }

@@ -60,7 +60,7 @@ std::string read_mesh_words();
 bool has_mesh_extension(const std::filesystem::path& file);
 bool has_readable_extension(const std::filesystem::path& file);
 
-// The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for
+// The extension of a mesh's name in lower case, without the .zst or .gz of a compressed one: ".ply" for
 // "Bennu.PLY" and for "bennu.ply.zst".
 std::string mesh_extension(const std::filesystem::path& file);
 

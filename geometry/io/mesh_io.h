@@ -30,6 +30,7 @@ namespace astrolith {
 // - .bmf: bodies of OpenUniverse, in kilometres; welded, with one winding of each triangle
 // - .glb: the triangles of the scene of a glTF, in metres with +z up; welded; without parts that only collide
 // - .bds: the plates of a SPICE shape kernel, in kilometres
+// Files compressed by Zstandard or gzip are unpacked.
 // For any other extension the content decides. Polygons become triangles: fans around their first corners, or
 // ears where a fan would leave a polygon that is not convex. Lengths stay in the file's unit.
 //

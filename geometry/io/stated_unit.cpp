@@ -7,6 +7,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/named_table_internal.h"
 #include "geometry/io/pds_label_internal.h"
+#include "numerics/files/gzip_stream.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace astrolith {
@@ -26,6 +27,7 @@ std::string read_start(const std::filesystem::path& file) {
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
+  if (is_gzip(bytes)) return unpack_gzip_start(bytes, kMostHeader);
   return is_zstd(bytes) ? unpack_zstd_start(bytes, kMostHeader) : bytes;
 }
 

@@ -1,5 +1,6 @@
-// Zstandard where libzstd is missing: compressed files are known and refused.
+// Zstandard and gzip where libzstd and zlib are missing: compressed files are known and refused.
 #include "numerics/errors.h"
+#include "numerics/files/gzip_stream.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace astrolith {
@@ -15,5 +16,13 @@ std::string unpack_zstd(std::string_view, std::uint64_t) {
 }
 
 std::string unpack_zstd_start(std::string_view, std::size_t) { return {}; }
+
+bool is_gzip(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
+
+std::string unpack_gzip(std::string_view, std::uint64_t) {
+  throw InputError("is compressed, and zlib is missing here; unpack it first");
+}
+
+std::string unpack_gzip_start(std::string_view, std::size_t) { return {}; }
 
 }  // namespace astrolith

@@ -198,7 +198,7 @@ std::string gravity_lines(const Figures& figures) {
 }
 
 struct Arguments {
-  std::string shape, output, preview, points, unit, parts, at = "facets", color = "slope_deg";
+  std::string shape, output, harmonics, preview, points, unit, parts, at = "facets", color = "slope_deg";
   double density = 0.0, period = 0.0, tolerance = 1e-7, radius = 0.0;
   std::tuple<double, double, double> axis{0, 0, 1};
   int resolution = 128, degree = 4, sample = 100;
@@ -215,7 +215,8 @@ void add_options(Job& job, Arguments& a) {
       .required()
       .placeholder("SHAPE")
       .reads(recipe_and_images);
-  app.add_option("-o,--output", a.output, "table of all places (.csv, .npy), or the mesh with values (.ply)")
+  app.add_option("-o,--output", a.output,
+                 "table of all places (.csv, .npy), or the mesh with values (.ply of vertices, .vtp of both)")
       .placeholder("FILE")
       .writes();
   app.add_option("--density", a.density, "kg/m3, of the whole body").placeholder("N").default_text("");
@@ -254,6 +255,10 @@ void add_options(Job& job, Arguments& a) {
       .check(in_range(0, 100000));
   app.add_option("--degree", a.degree, "of the spherical harmonics of gravity")
       .check(in_range(0, kMostDegree));
+  app.add_option("--harmonics", a.harmonics,
+                 "also the harmonics: .gfc (ICGEM), or .sha or .tab (SHADR of the Planetary Data System)")
+      .placeholder("FILE")
+      .writes();
   app.add_option("--radius", a.radius,
                  "reference radius of the harmonics, in the body's unit; 0 = farthest vertex")
       .check(zero_or_more());
@@ -295,12 +300,18 @@ void check(const Job& job, const Arguments& a) {
   }
   check_sites(job, a.sites, a.at == "facets" && a.points.empty());
   if (!a.output.empty()) {
-    require_extension(a.output, {".csv", ".npy", ".ply"});
+    require_extension(a.output, {".csv", ".npy", ".ply", ".vtp"});
     if (a.output.ends_with(".ply") && (a.at != "vertices" || !a.points.empty())) {
       throw InputError(a.output +
-                       ": a PLY holds values of vertices; add --at vertices, or write .csv or .npy");
+                       ": a PLY holds values of vertices; add --at vertices, or write .csv, .npy or .vtp");
     }
+    if (a.output.ends_with(".vtp") && !a.points.empty())
+      throw InputError(a.output + ": holds the mesh, and --points are others; write .csv or .npy");
     require_writable(a.output);
+  }
+  if (!a.harmonics.empty()) {
+    require_extension(a.harmonics, {".gfc", ".sha", ".tab"});
+    require_writable(a.harmonics);
   }
   a.look.check(job, !a.preview.empty(), "add --preview FILE.png");
   if (!a.preview.empty()) {
@@ -326,7 +337,7 @@ GravityOptions gravity_options(const Job& job, const Arguments& a, const Gravity
 
 void write_outputs(Job& job, const Arguments& a, const GravityBody& body,
                    const std::vector<GravityColumn>& columns, const std::vector<LandingSite>& sites) {
-  if (!a.output.empty()) write_gravity(columns, body, a.output, job.tool());
+  if (!a.output.empty()) write_gravity(columns, body, a.at == "facets", a.output, job.tool());
   if (a.preview.empty()) return;
   for (const GravityColumn& column : columns) {
     if (column.name == a.color) write_gravity_preview(job, body, column, sites, a.look, a.preview);
@@ -345,6 +356,8 @@ void run(Job& job, const Arguments& a) {
   if (!repair.is_null()) result["repair"] = repair;
   const std::vector<LandingSite> sites = landing_sites(job, a.sites, a.shape, body, made.columns, result);
   write_outputs(job, a, body, made.columns, sites);
+  if (!a.harmonics.empty())
+    write_harmonics(made.figures, a.harmonics, std::filesystem::path(a.shape).stem().string());
   if (!body.unit_words.empty()) job.say(body.unit_words);
   job.print_result(a.json ? json_text(result) : gravity_lines(result));
   job.summary = result;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <numbers>
 
@@ -60,6 +61,23 @@ TEST_F(MeshFormats, GlbComesBack) {
   EXPECT_EQ(stated_length_unit(folder / "a.glb"), "px");
   write_mesh(mesh, folder / "a.glb", {"km", "", "", Vec3d{0, 0, 2}, true});  // a whole body about its origin
   EXPECT_NEAR(read_mesh(folder / "a.glb").bounds().max.z, 3500.0, 1e-3);
+}
+
+// gzip, as its program makes it, of one piece and of two; the beginning tells the unit.
+TEST_F(MeshFormats, GzipIsUnpacked) {
+  write_mesh(icosphere(2, 1.5), folder / "a.obj", {"m", "", ""});
+  const std::string plain = (folder / "a.obj").string(), half = (folder / "half").string();
+  const auto ran = [](const std::string& command) { return std::system(command.c_str()); };  // NOLINT
+  ASSERT_EQ(ran("gzip -nk " + plain + " && (head -c 5000 " + plain + " | gzip -n; tail -c +5001 " + plain +
+                " | gzip -n) > " + half + ".obj.gz"),
+            0);
+  for (const char* name : {"a.obj.gz", "half.obj.gz"}) {
+    EXPECT_TRUE(read_mesh(folder / name).vertices == read_mesh(folder / "a.obj").vertices) << name;
+    EXPECT_EQ(stated_length_unit(folder / name), "m") << name;
+  }
+  const std::string packed = read_text(folder / "a.obj.gz");
+  EXPECT_THROW(read("cut.obj.gz", packed.substr(0, packed.size() / 2)), InputError);
+  EXPECT_THROW(write_mesh(icosphere(1, 1), folder / "a.ply.gz", {}), InputError);
 }
 
 // An index may name a vertex that comes later.

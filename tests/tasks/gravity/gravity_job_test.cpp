@@ -1,8 +1,10 @@
 // gravity: of bodies and points, of parts of other densities, and landing sites.
 #include "tasks/gravity/gravity_job.h"
 
+#include <algorithm>
 #include <cstring>
 #include <numbers>
+#include <sstream>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
@@ -191,6 +193,62 @@ TEST_F(Gravity, WritesValuesOfVerticesThatReadersSkip) {
   gravity("rod.obj --density 1000 -o v.npy");
   EXPECT_NE(text("v.npy").find("'shape': (" + std::to_string(mesh.triangles.size()) + ", 11)"),
             std::string::npos);
+}
+
+// A .vtp has the values of facets, or of vertices, as doubles behind its header.
+TEST_F(Gravity, WritesVtpOfFacetsAndVertices) {
+  write("rod.obj", ellipsoid_obj(3, 0.5, 0.4, 9, 12));
+  for (const std::string at : {"facets", "vertices"}) {
+    gravity("rod.obj --density 1000 --at " + at + " -o v.vtp");
+    gravity("rod.obj --density 1000 --at " + at + " -o v.csv");
+    const std::string bytes = text("v.vtp"), table = text("v.csv");
+    EXPECT_EQ(has(bytes, "<CellData>"), at == "facets");
+    EXPECT_EQ(has(bytes, "<PointData>"), at == "vertices");
+    const std::string mark = R"(Name="potential_J_kg" NumberOfComponents="1" format="appended" offset=")";
+    const std::size_t offset = std::stoull(bytes.substr(bytes.find(mark) + mark.size()));
+    const char* const array = bytes.data() + bytes.find("<AppendedData encoding=\"raw\">\n_") + 31 + offset;
+    std::uint64_t length = 0;
+    double first = 0.0;
+    std::memcpy(&length, array, sizeof length);
+    std::memcpy(&first, array + sizeof length, sizeof first);
+    EXPECT_EQ(length / sizeof(double), std::count(table.begin(), table.end(), '\n') - 1);
+    std::istringstream row(table.substr(table.find('\n') + 1));  // x, y, z, potential
+    std::string cell;
+    for (int k = 0; k < 4; ++k) std::getline(row, cell, ',');
+    EXPECT_EQ(first, std::stod(cell));
+  }
+  EXPECT_EQ(run("rod.obj --density 1000 --points rod.obj -o v.vtp").status, 2);
+}
+
+// Both files hold the coefficients of the figures, as ICGEM and the Planetary Data System state them.
+TEST_F(Gravity, WritesHarmonicsForOtherPrograms) {
+  write("rod.obj", ellipsoid_obj(3, 0.5, 0.4, 9, 12));
+  const auto figures = gravity("rod.obj --density 1000 --degree 3 --harmonics rod.gfc");
+  gravity("rod.obj --density 1000 --degree 3 --harmonics rod.sha");
+  const std::string gfc = text("rod.gfc");
+  std::string shadr = text("rod.sha");
+  EXPECT_TRUE(has(gfc, "modelname rod\n") && has(gfc, "max_degree 3\n") &&
+              has(gfc, "norm fully_normalized\n"));
+  const double gm = 6.67430e-11 * figures["body"]["mass_kg"].get<double>();
+  EXPECT_NEAR(std::stod(gfc.substr(gfc.find("earth_gravity_constant ") + 23)) / gm, 1.0, 1e-15);
+  std::replace(shadr.begin(), shadr.end(), ',', ' ');
+  std::istringstream lines(gfc.substr(gfc.find("end_of_head\n") + 12)), table(shadr);
+  double radius_km = 0.0, gm_km = 0.0, skipped = 0.0;
+  table >> radius_km >> gm_km;
+  for (int k = 0; k < 6; ++k) table >> skipped;
+  EXPECT_NEAR(radius_km, figures["harmonics"]["reference_radius_m"].get<double>() / 1e3, 1e-12);
+  EXPECT_NEAR(gm_km / gm, 1e-9, 1e-24);
+  for (const auto& row : figures["harmonics"]["degree_order_c_s"]) {
+    std::string key;
+    int l = 0, m = 0;
+    double c = 0.0, s = 0.0;
+    ASSERT_TRUE(lines >> key >> l >> m >> c >> s);
+    EXPECT_TRUE(l == row[0] && m == row[1] && c == row[2] && s == row[3]);
+    if (l == 0) continue;
+    ASSERT_TRUE(table >> l >> m >> c >> s >> skipped >> skipped);
+    EXPECT_TRUE(l == row[0] && m == row[1] && c == row[2] && s == row[3]);
+  }
+  EXPECT_EQ(run("rod.obj --density 1000 --harmonics rod.txt").status, 2);
 }
 
 TEST_F(Gravity, TellsAPersonTenLines) {
