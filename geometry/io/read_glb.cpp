@@ -210,7 +210,8 @@ class GlbReader {
         (count > 0 && (size - view_offset - offset < width ||
                        (count - 1) > (size - view_offset - offset - width) / stride)))
       file_.fail("accessor " + number.dump(), "ends beyond the data", "fetch the file again");
-    return {binary_.data() + view_offset + offset, count, stride, width};
+    return {binary_.data() + view_offset + offset, static_cast<std::size_t>(count),
+            static_cast<std::size_t>(stride), width};
   }
 
   const MeshFile& file_;
