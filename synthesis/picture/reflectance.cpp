@@ -147,10 +147,26 @@ const std::map<std::string, NamedLaw, std::less<>>& named_laws() {
   return laws;
 }
 
+// Hapke's numbers as they were fitted to a body: Ceres by Schroeder et al. 2018 (in A&A 634, 2020, table 2),
+// the nucleus of Tempel 1 by Li et al. 2007, who state no opposition surge.
+const std::map<std::string, std::string, std::less<>> kFittedBodies{
+    {"ceres", " w .116 g -.11 b0 1.6 h .054 theta 23"}, {"tempel1", " w .039 g -.49 b0 0 theta 16"}};
+
+// "hapke w .116 ..." for "hapke ceres"; numbers that follow the body's name stay behind its own.
+std::string with_fitted_numbers(const std::string& words) {
+  std::istringstream in(words);
+  std::string law, body, rest;
+  in >> law >> body;
+  const auto fitted = kFittedBodies.find(body);
+  if (law != "hapke" || fitted == kFittedBodies.end()) return words;
+  std::getline(in, rest);
+  return law + fitted->second + rest;
+}
+
 }  // namespace
 
 Reflectance parse_reflectance(const std::string& name, const std::string& words) {
-  std::istringstream in(words);
+  std::istringstream in(with_fitted_numbers(words));
   std::string law;
   in >> law;
   Reflectance made;

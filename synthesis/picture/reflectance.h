@@ -33,14 +33,14 @@ struct Reflectance {
 
 // "rock" (L = .35), "lambert", "lommel-seeliger", "akimov", or a law with its numbers: "mcewen L .5",
 // "minnaert k .6", "rolo C0 .02 C1 .1 A0 .08 A1 -.001", "hapke w .2 g -.3 b0 .8 h .05 theta 20"; what is left
-// out has the value above. Throws InputError, naming `name`, for words that say no law and for numbers out of
-// range.
+// out has the value above. "hapke ceres" and "hapke tempel1" have the numbers of a body, which others may
+// follow. Throws InputError, naming `name`, for words that say no law and for numbers out of range.
 Reflectance parse_reflectance(const std::string& name, const std::string& words);
 
 // The words of parse_reflectance(), for messages.
 inline constexpr const char* kReflectanceWords =
     "rock, lambert, lommel-seeliger, akimov, mcewen L N, minnaert k N, hapke w N g N b0 N h N theta "
-    "DEGREES, rolo C0 N C1 N A0 N ... A4 N";
+    "DEGREES, hapke ceres, hapke tempel1, rolo C0 N C1 N A0 N ... A4 N";
 
 // Whether the law has the albedo of the ground in itself, so that its value is I/F: Hapke's and ROLO's.
 inline bool is_radiance_factor(const Reflectance& law) {

@@ -88,6 +88,16 @@ TEST(Reflectance, RoloIsLommelSeeligerWithItsPhaseCurve) {
   EXPECT_TRUE(is_radiance_factor(rolo));
 }
 
+TEST(Reflectance, BodiesHaveFittedNumbers) {
+  const Reflectance ceres = parse_reflectance("", "hapke ceres"),
+                    rough = parse_reflectance("", "hapke ceres theta 40");
+  EXPECT_EQ(ceres.w, 0.116);
+  EXPECT_EQ(ceres.theta, 23.0);
+  EXPECT_EQ(rough.w, 0.116);
+  EXPECT_EQ(rough.theta, 40.0);
+  EXPECT_EQ(parse_reflectance("", "hapke tempel1").b0, 0.0);
+}
+
 TEST(Reflectance, WordsAreChecked) {
   EXPECT_EQ(parse_reflectance("law", "minnaert k .55").k, 0.55);
   EXPECT_EQ(parse_reflectance("law", "lommel-seeliger").lunar_share, 1.0);
