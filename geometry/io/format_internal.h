@@ -68,6 +68,13 @@ class PolygonFans {
 // one format and the content is clearly another, and when neither tells the format.
 TriangleMesh read_content(const MeshFile& file);
 
+// Whether the content is of a format of meshes, or begins as one of the kinds that refuse_other_kinds()
+// knows.
+bool looks_like_mesh(const MeshFile& file);
+
+// The mesh of a file that may have no faces. Throws InputError as read_mesh does otherwise.
+TriangleMesh read_any(const MeshFile& file);
+
 // Throws InputError for a file that begins as one of the kinds that are no mesh and no table: pictures,
 // archives, kernels, scenes of other programs. `remedy` is for those that need no other.
 void refuse_other_kinds(const MeshFile& file, const std::string& remedy);

@@ -22,6 +22,8 @@ struct OtherFile {
 
 constexpr const char* kUnpack = "unpack it first";
 constexpr const char* kExport = "open it in its program, and export it as .ply, .obj or .stl";
+constexpr const char* kReadPoints =
+    "read it by Python's astrolith.bridges.read_points, or convert it to .ply (pdal translate)";
 constexpr const char* kExportPlates = "export its plates: dskexp -dsk FILE -text FILE.tab -format 1 (NAIF)";
 
 // Files of other kinds that users hand over by mistake.
@@ -61,9 +63,9 @@ constexpr OtherFile kOtherFiles[] = {
     {"DRACO", "a Draco mesh", kExport},
     {"xof ", "a DirectX scene", kExport},
     {"# vtk DataFile", "a VTK file", kExport},
-    {"# .PCD", "a point cloud of PCL", "convert it by pcl_pcd2ply"},
-    {"LASF", "a LAS point cloud", "convert it to .ply"},
-    {"ASTM-E57", "an E57 point cloud", "convert it to .ply"},
+    {"# .PCD", "a point cloud of PCL", kReadPoints},
+    {"LASF", "a LAS point cloud", kReadPoints},
+    {"ASTM-E57", "an E57 point cloud", kReadPoints},
     {"\xd0\xcf\x11\xe0", "a document of Microsoft Office", "save its table as .csv"},
     {"version https://git-lfs", "a Git LFS pointer", "fetch the file itself: git lfs pull"},
 };
@@ -272,6 +274,11 @@ TriangleMesh read_content(const MeshFile& file) {
               "rename it to " + std::string(seen->extensions[0]));
   }
   return seen->reader(file);
+}
+
+bool looks_like_mesh(const MeshFile& file) {
+  return other_file(file) != nullptr || std::any_of(std::begin(kFormats), std::end(kFormats),
+                                                    [&](const MeshFormat& f) { return f.has(file); });
 }
 
 std::span<const MeshFormat> mesh_formats() { return kFormats; }

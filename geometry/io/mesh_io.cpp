@@ -89,22 +89,26 @@ TriangleMesh in_frame(TriangleMesh mesh, const MeshFile& file) {
 
 }  // namespace
 
+TriangleMesh read_any(const MeshFile& file) {
+  TriangleMesh mesh = in_frame(read_content(file), file);
+  require_valid(file, mesh);
+  return mesh;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = in_frame(read_content(content), content);
+  TriangleMesh mesh = read_any(content);
   if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
-  require_valid(content, mesh);
   return mesh;
 }
 
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = in_frame(read_content(content), content);
+  TriangleMesh mesh = read_any(content);
   if (mesh.triangles.empty() && mesh.normals.empty()) {
-    content.fail("", "holds neither faces nor points with unit normals",
+    content.fail("", "holds neither faces nor points with normals",
                  "give a mesh, or a .ply with x y z nx ny nz");
   }
-  require_valid(content, mesh);
   return mesh;
 }
 

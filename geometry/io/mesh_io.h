@@ -39,7 +39,7 @@ namespace astrolith {
 // memory used, whatever counts the file declares.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-// Reads as read_mesh does, but also accepts points with unit normals and without faces (.ply). The mesh then
+// Reads as read_mesh does, but also accepts points with normals and without faces (.ply). The mesh then
 // has vertices and normals and no triangles.
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file);
 
@@ -125,6 +125,15 @@ struct PointTable {
 // file without points, for other names and widths, and for numbers that are missing or not finite. The size
 // of the file bounds the memory used.
 PointTable read_point_table(const std::filesystem::path& file, std::string_view unit);
-std::vector<Vec3d> read_points(const std::filesystem::path& file);
+
+// Reads a mesh, or a cloud of points: .xyz .pts .asc .xyzn .xyzrgb, other text that is no mesh, and meshes
+// without faces. Text may have a line "//X Y Z ..." or the number of points in front, and more columns than
+// x, y and z, which are ignored. Normals are kept where all points of a .ply have one. Throws InputError as
+// read_mesh and read_point_table do, and for unnamed columns the first of which counts the lines.
+TriangleMesh read_cloud(const std::filesystem::path& file);
+std::vector<Vec3d> read_points(const std::filesystem::path& file);  // a cloud of text alone
+
+// Whether the name is that of a cloud of points.
+bool holds_points(const std::filesystem::path& file);
 
 }  // namespace astrolith

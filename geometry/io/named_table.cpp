@@ -108,7 +108,7 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields) 
 }
 
 bool is_comment(std::string_view line) {
-  return !line.empty() && kComments.find(line.front()) != kComments.npos;
+  return !line.empty() && (kComments.find(line.front()) != kComments.npos || line.starts_with("//"));
 }
 
 struct ColumnName {
@@ -291,7 +291,8 @@ void NamedTable::find_layout() {
   while (scan_.next_line()) {
     const std::string_view line = trimmed(scan_.whole_line());
     if (is_comment(line)) {
-      const std::size_t text = std::min(line.find_first_not_of(kComments), line.size());
+      const std::string_view marks = line.front() == '/' ? "/" : kComments;
+      const std::size_t text = std::min(line.find_first_not_of(marks), line.size());
       if (auto named = named_layout(line.substr(text))) in_comment = std::move(named);
       continue;
     }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "geometry/io/named_table_internal.h"
 #include "numerics/length_unit.h"
@@ -8,7 +10,7 @@ namespace {
 
 constexpr double kLargestPlace = 1e18;
 
-TableLayout require_layout(const NamedTable& table, const MeshFile& file) {
+TableLayout require_layout(const NamedTable& table, bool cloud) {
   if (table.layout()) return *table.layout();
   if (!table.unknown_names().empty()) {
     table.fail("the first line " + quoted(table.unknown_names()) +
@@ -16,8 +18,8 @@ TableLayout require_layout(const NamedTable& table, const MeshFile& file) {
                "name the columns so, such as id,x_km,y_km,z_km, or give lines of x y z");
   }
   TableLayout layout;
-  // Clouds of points in .xyz have normals or colours behind their coordinates, and no names.
-  layout.width = mesh_extension(file.path) == ".xyz" ? 0 : 3;
+  // Clouds of points have normals or colours behind their coordinates, and no names.
+  layout.width = cloud ? 0 : 3;
   return layout;
 }
 
@@ -52,16 +54,16 @@ Vec3d place_in(const NamedTable& table, const TableLayout& layout) {
   return spherical_point(latitude, layout.west ? -longitude : longitude, table.number(third, "radius"));
 }
 
-}  // namespace
-
-PointTable read_point_table(const std::filesystem::path& file, std::string_view unit) {
-  const MeshFile content = load_mesh_file(file);
+PointTable read_table(const MeshFile& content, std::string_view unit, bool cloud) {
   refuse_other_kinds(content, "give lines of x, y and z");
   NamedTable table(content);
-  const TableLayout layout = require_layout(table, content);
+  const TableLayout layout = require_layout(table, cloud);
   const double scale = scale_to(layout, unit, table);
   PointTable points{{}, layout.words};
-  while (table.next_row()) {
+  std::size_t counting = 0;  // rows that begin with their number, from 0 or 1
+  for (std::size_t rows = 0; table.next_row(); ++rows) {
+    // The number of points, in front of them.
+    if (cloud && rows == 0 && table.width() == 1) continue;
     require_width(table, layout);
     const Vec3d p = scale * place_in(table, layout);
     for (const double c : {p.x, p.y, p.z}) {
@@ -69,13 +71,39 @@ PointTable read_point_table(const std::filesystem::path& file, std::string_view 
         table.fail("a coordinate is beyond 1e18", "state lengths in a larger unit");
     }
     points.points.push_back(p);
+    const auto number = static_cast<double>(points.points.size());
+    counting += layout.width == 0 && table.width() > 3 && (p.x == number || p.x == number - 1.0);
   }
   if (points.points.empty()) content.fail("", "holds no points", "give lines of x, y and z");
+  if (counting > 1 && counting == points.points.size())
+    content.fail("", "the first of its columns counts the lines",
+                 "name the columns in a first line, such as id,x,y,z");
   return points;
 }
 
+// Endings of clouds of points in text.
+constexpr std::string_view kCloudExtensions[] = {".xyz", ".pts", ".asc", ".xyzn", ".xyzrgb"};
+
+}  // namespace
+
+bool holds_points(const std::filesystem::path& file) {
+  const std::string extension = mesh_extension(file);
+  return std::find(std::begin(kCloudExtensions), std::end(kCloudExtensions), extension) !=
+         std::end(kCloudExtensions);
+}
+
+PointTable read_point_table(const std::filesystem::path& file, std::string_view unit) {
+  return read_table(load_mesh_file(file), unit, mesh_extension(file) == ".xyz");
+}
+
 std::vector<Vec3d> read_points(const std::filesystem::path& file) {
-  return read_point_table(file, "").points;
+  return read_table(load_mesh_file(file), "", true).points;
+}
+
+TriangleMesh read_cloud(const std::filesystem::path& file) {
+  const MeshFile content = load_mesh_file(file);
+  const bool table = holds_points(file) || (!has_readable_extension(file) && !looks_like_mesh(content));
+  return table ? TriangleMesh{read_table(content, "", true).points, {}, {}} : read_any(content);
 }
 
 }  // namespace astrolith

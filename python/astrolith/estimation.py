@@ -7,13 +7,14 @@ together with it does so under the GPL. ``astrolith.synthesis`` alone is free of
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Optional, Union
+from typing import TYPE_CHECKING, Optional, Union, cast
 
+import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _estimation, _jobs, _options
 from astrolith._classes import classify, train_classifier
-from astrolith._mesh import Mesh, MeshLike, arrays_of, stated_unit
+from astrolith._mesh import Arrays, Mesh, MeshLike, arrays_of, stated_unit
 from astrolith._options import Progress
 from astrolith._packing import Packing, pack_spheres
 from astrolith._recipe import Recipe, Record, records
@@ -98,21 +99,26 @@ def repair_mesh(
     faces: Optional[npt.ArrayLike] = None,
     *,
     wrap: bool = False,
+    fill_unseen: bool = False,
     union: bool = False,
     all_parts: bool = False,
     progress: Progress = None,
 ) -> tuple[Mesh, Record]:
     """Close a mesh that is open, not manifold or wound both ways, as ``gravity`` and ``fit_shape`` do.
 
+    With `wrap` also a cloud of points becomes a body: a Poisson surface that averages their noise.
+
     A mesh that is closed, of one body, comes back as it is.
 
     Parameters
     ----------
     mesh
-        The name of a file, a mesh, or (n, 3) float vertices; then `faces` are (m, 3) indices.
+        The name of a file, a mesh, or (n, 3) float vertices; then `faces` are (m, 3) indices, or absent of points.
     wrap
         Where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of it, or fails: wrap the
         mesh at 1/200 of the diagonal.
+    fill_unseen
+        Take the surface through points also where they saw less than two thirds of the ground.
     union
         Make one surface of parts that overlap or lie inside one another. Cavities stay.
     all_parts
@@ -136,9 +142,15 @@ def repair_mesh(
     >>> figures.holes >= 1, len(closed.faces) == len(body.faces)
     (True, True)
     """
-    arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
+    no_faces = np.zeros((0, 3), np.uint32)
+    if wrap and _arrays.is_file_name(mesh):
+        arrays = Arrays(_arrays.file_name(mesh, "mesh"), np.zeros((0, 3)), no_faces, None)
+    elif wrap and faces is None and isinstance(mesh, np.ndarray):
+        arrays = Arrays("mesh", _arrays.rows(mesh, "mesh"), no_faces, None)
+    else:
+        arrays = arrays_of(cast(MeshLike, mesh) if faces is None else (mesh, faces), "mesh")
     unit = stated_unit(mesh)
     vertices, triangles, figures = _estimation.repair_mesh(
-        arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(union), bool(all_parts), unit, progress
+        arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(fill_unseen), bool(union), bool(all_parts), unit, progress
     )
     return Mesh(vertices, triangles, length_unit=unit), records(figures)

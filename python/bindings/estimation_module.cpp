@@ -52,16 +52,19 @@ void train_classifier_file(const std::vector<std::string>& folders, const std::s
 // The repaired vertices and faces, and the figures.
 std::tuple<NumpyArray<double>, NumpyArray<std::uint32_t>, std::string> repair_in_job(
     const std::string& name, const Rows<double>& vertices, const Rows<std::uint32_t>& faces, bool wrap,
-    bool unite, bool all_parts, const std::string& unit, nb::object progress) {
+    bool fill_unseen, bool unite, bool all_parts, const std::string& unit, nb::object progress) {
   RepairOptions options;
   options.wrap = wrap;
+  options.fill_unseen = fill_unseen;
   options.unite = unite;
   options.all_parts = all_parts;
   options.overlap = "rock counts twice, and walls lie inside it; union=True makes one surface of them";
   options.remedy = "repair it, or pass wrap=True";
   MeshRepair repair =
       run_job(std::move(progress), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState& state) {
-        return repair_mesh(mesh, name, options, state.progress("repair"));
+        // A file of points, too, is read here.
+        return repair_mesh(mesh.vertices.empty() ? read_mesh_to_repair(name, wrap) : mesh, name, options,
+                           state.progress("repair"));
       });
   nlohmann::ordered_json figures = repair_json(repair);
   figures["words"] = repair_words(repair, unit, options);
@@ -90,8 +93,8 @@ NB_MODULE(_estimation, module) {
   declare_common(module);
   declare_fits(module);
   module.def("repair_mesh", &repair_in_job, nb::arg("name"), nb::arg("vertices").noconvert(),
-             nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("unite"), nb::arg("all_parts"),
-             nb::arg("unit"), nb::arg("progress").none());
+             nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("fill_unseen"), nb::arg("unite"),
+             nb::arg("all_parts"), nb::arg("unit"), nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),

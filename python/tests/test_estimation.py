@@ -131,6 +131,18 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
 
 
+def test_a_surface_through_points():
+    n = 4000
+    z, angle = (2 * np.arange(n) + 1) / n - 1, 2.399963229728653 * np.arange(n)
+    points = np.column_stack((1.5 * np.sqrt(1 - z**2) * np.cos(angle), np.sqrt(1 - z**2) * np.sin(angle), z))
+    body, figures = astrolith.repair_mesh(points, wrap=True)
+    assert figures.points == n and "surface through 4000 points" in figures.words
+    a, b, c = (body.vertices[body.faces[:, k]].astype(float) for k in range(3))
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6 == pytest.approx(2 * np.pi, rel=0.004)
+    with pytest.raises(ValueError, match="^mesh: .*fill_unseen"):
+        astrolith.repair_mesh(points[points[:, 0] > 0], wrap=True)
+
+
 @pytest.mark.parametrize("channels", ["luminance", "pca"])
 def test_the_spectrum_of_the_lobes_is_what_fit_gabor_writes(program, tmp_path, channels):
     rows, columns = np.indices((48, 64))

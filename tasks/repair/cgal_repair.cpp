@@ -173,11 +173,7 @@ TriangleMesh alpha_wrapped(const TriangleMesh& mesh, double alpha, double offset
   return guarded(name, "cannot be wrapped", [&] {
     const std::vector<Point> points = to_points(mesh);
     SurfaceMesh wrap;
-    if (mesh.triangles.empty()) {
-      CGAL::alpha_wrap_3(points, alpha, offset, wrap);
-    } else {
-      CGAL::alpha_wrap_3(points, to_soup(mesh), alpha, offset, wrap);
-    }
+    CGAL::alpha_wrap_3(points, to_soup(mesh), alpha, offset, wrap);
     return to_mesh(wrap);
   });
 }

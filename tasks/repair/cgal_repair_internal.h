@@ -33,9 +33,22 @@ struct UncrossedMesh {
 UncrossedMesh remove_crossings(const TriangleMesh& mesh, const std::string& name, const Progress& progress);
 
 // The wrap of Portaneri and others, "Alpha wrapping with an offset", ACM Transactions on Graphics 2022: a
-// closed surface without crossings around the mesh, or around its vertices where it has no facets. Balls of
-// radius `alpha` do not pass through it, and it lies about `offset` outside. Lengths are those of the mesh.
+// closed surface without crossings around the mesh. Balls of radius `alpha` do not pass through it, and it
+// lies about `offset` outside. Lengths are those of the mesh.
 TriangleMesh alpha_wrapped(const TriangleMesh& mesh, double alpha, double offset, const std::string& name);
+
+// Each point moved onto a surface of second degree through its `neighbours` nearest ones, by least squares.
+std::vector<Vec3d> jet_smoothed(std::vector<Vec3d> points, int neighbours);
+
+// Unit normals of such surfaces (Cazals and Pouget, 2005), turned alike along a minimal spanning tree (Hoppe
+// and others, 1992). Which of the two ways is outwards is not known. A normal that cannot be turned is zero.
+std::vector<Vec3d> jet_normals(const std::vector<Vec3d>& points, int neighbours);
+
+// The surface of the indicator function whose gradient the outward normals are (Kazhdan and others, "Poisson
+// surface reconstruction", 2006): closed, with facets of at most the radius `facet`, within `error` of the
+// surface. Empty where there is none. The same in every run.
+TriangleMesh poisson_surface(const std::vector<Vec3d>& points, const std::vector<Vec3d>& normals,
+                             double facet, double error, const std::string& name);
 
 // The surface of the union of all components, each of which is closed, less the cavities: components of
 // negative volume. A smaller component may lie in a larger cavity. No walls are buried. Computed exactly, and

@@ -13,13 +13,13 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/points/nearest_neighbours.h"
 #include "geometry/surface/surface_tree.h"
 #include "geometry/wound_surface.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tasks/repair/cgal_repair_internal.h"
 #include "tasks/repair/mesh_repair_internal.h"
+#include "tasks/repair/point_surface_internal.h"
 
 namespace astrolith {
 namespace {
@@ -245,27 +245,6 @@ bool weld_and_orient(MeshRepair& repair) {
   return topology.closed && topology.non_manifold_edges == 0 && orient(repair);
 }
 
-// The distance between neighbours of a cloud of points: nine in ten have one nearer than this.
-double mean_spacing(const std::vector<Vec3d>& points) {
-  constexpr int kNeighbours = 3;
-  const std::vector<std::uint32_t> nearest = nearest_neighbours(points, kNeighbours);
-  std::vector<double> distances;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    distances.push_back(norm(points[nearest[kNeighbours * i + kNeighbours - 1]] - points[i]));
-  }
-  const auto place = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 9 / 10);
-  std::nth_element(distances.begin(), place, distances.end());
-  return *place;
-}
-
-// The mesh whose surface is as it was given: points count for facets without a size.
-TriangleMesh as_surface(const TriangleMesh& mesh) {
-  if (!mesh.triangles.empty()) return mesh;
-  TriangleMesh points{mesh.vertices, {}, {}};
-  for (std::uint32_t v = 0; v < points.vertices.size(); ++v) points.triangles.push_back({v, v, v});
-  return points;
-}
-
 // The wrap lies outside by its offset. Its vertices move onto the surface where that is near.
 void move_onto(TriangleMesh& wrap, const SurfaceTree& tree, double offset) {
   parallel_for(
@@ -287,15 +266,6 @@ MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Prog
   repair.diagonal = mesh.bounds().diagonal();
   repair.wrap_alpha = kWrapAlpha * repair.diagonal;
   repair.wrap_offset = kWrapOffset * repair.diagonal;
-  if (mesh.triangles.empty()) {
-    constexpr std::size_t kFewestPoints = 16;
-    if (mesh.vertices.size() < kFewestPoints) {
-      throw InputError(name + ": holds " + std::to_string(mesh.vertices.size()) +
-                       " points; a wrap needs at least 16");
-    }
-    constexpr double kSpacings = 3.0;  // a ball of this radius does not fall between neighbours
-    repair.wrap_alpha = std::max(repair.wrap_alpha, kSpacings * mean_spacing(mesh.vertices));
-  }
   const double finest = repair.wrap_alpha;
   double inside = 0.0;  // volume of the wrap so far
   for (const double alpha : {27.0 * finest, 9.0 * finest, 3.0 * finest, finest}) {
@@ -309,12 +279,45 @@ MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Prog
   }
   if (repair.mesh.triangles.empty()) throw InputError(name + ": its wrap is empty; give a body");
   tell(progress, 0.9, "wrap");
-  const TriangleMesh surface = as_surface(mesh);
-  const SurfaceTree tree(surface);
+  const SurfaceTree tree(mesh);
   move_onto(repair.mesh, tree, repair.wrap_offset);
   orient(repair);
   repair.turned_facets = 0;
-  repair.moved = distance_moved(repair.mesh, surface);
+  repair.moved = distance_moved(repair.mesh, mesh);
+  require_sound(repair.mesh, name);
+  return repair;
+}
+
+// A surface through points without faces.
+MeshRepair through_points(const TriangleMesh& mesh, const std::string& name, const RepairOptions& options,
+                          const Progress& progress) {
+  PointSurface surface = surface_through(mesh, name, progress);
+  MeshRepair repair;
+  repair.changed = true;
+  repair.diagonal = mesh.bounds().diagonal();
+  repair.points = surface.points;
+  repair.stray_points = surface.strays;
+  repair.stray = surface.stray;
+  repair.noise = surface.noise;
+  repair.farthest_point = surface.farthest_point;
+  repair.farthest_ground = surface.farthest_ground;
+  repair.unseen_share = surface.unseen_share;
+  repair.mesh = std::move(surface.mesh);
+  constexpr double kFarthest = 0.2;  // from a surface through them, over the diagonal
+  if (repair.farthest_point > kFarthest * repair.diagonal) {
+    throw InputError(name + ": no one closed surface goes through its points, which lie up to " +
+                     percent(repair.farthest_point / repair.diagonal) +
+                     " of the diagonal from it; give the points of one body");
+  }
+  if (repair.unseen_share > kMostUnseen && !options.fill_unseen) {
+    throw InputError(
+        fmt::format("{}: no point saw {:.0f} % of the ground, which is more than a guess should fill; give "
+                    "points of all sides, "
+                    "or add --fill-unseen",
+                    name, 100.0 * repair.unseen_share));
+  }
+  orient(repair);
+  repair.turned_facets = 0;
   require_sound(repair.mesh, name);
   return repair;
 }
@@ -363,11 +366,9 @@ MeshRepair with_bodies(MeshRepair repair, const std::string& name, const RepairO
 }  // namespace
 
 TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap) {
-  const bool points = mesh_extension(file) == ".xyz";
-  if (points && !wrap) throw InputError(file.string() + ": holds points without faces; add --wrap");
-  if (!wrap) return read_mesh(file);
-  if (points) return {read_points(file), {}, {}};
-  return read_mesh_or_points(file);
+  if (wrap) return read_cloud(file);
+  if (holds_points(file)) throw InputError(file.string() + ": holds points without faces; add --wrap");
+  return read_mesh(file);
 }
 
 MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairOptions& options,
@@ -387,13 +388,14 @@ MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairO
   try {
     const bool closed = !mesh.triangles.empty() && weld_and_orient(repair);
     if (mesh.triangles.empty()) {
-      repair = wrapped(mesh, name, progress);
+      return with_bodies(through_points(mesh, name, options, progress), name, options, progress);
     } else if (repair.mesh.triangles.empty()) {
       throw InputError(name + ": has no face with an area");
     } else if (!closed || options.crossings) {
       mend(repair, name, options, progress);
     }
   } catch (const InputError& e) {
+    if (mesh.triangles.empty()) throw;
     if (!options.wrap) throw InputError(std::string(e.what()) + "; " + options.remedy);
     repair = wrapped(mesh, name, progress);
   }

@@ -13,9 +13,9 @@
 //   4. CGAL winds the rest, cuts it open at edges of three or more facets, stitches equal places, fills
 //   holes;
 //   5. where the caller found that the mesh passes through itself, CGAL replaces the facets that cross.
-// A wrap is the last resort: a surface around the mesh through which balls of 1/200 of the diagonal do not
-// pass, whose vertices then move back onto the mesh. Where such balls pass through a hole, they are larger:
-// 3, 9 or 27 times.
+// Points without faces get a Poisson surface (point_surface_internal.h). A wrap is the last resort of meshes:
+// a surface around the mesh through which balls of 1/200 of the diagonal do not pass, whose vertices then
+// move back onto the mesh. Where such balls pass through a hole, they are larger: 3, 9 or 27 times.
 #pragma once
 
 #include <cstdint>
@@ -38,9 +38,10 @@ inline constexpr double kMostFilledBeforeWrap = 0.2;
 inline constexpr double kWrapAlpha = 1.0 / 200.0, kWrapOffset = 1.0 / 2000.0;
 
 struct RepairOptions {
-  bool wrap = false;       // where the steps fail, move or fill too much, the mesh is wrapped
-  bool all_parts = false;  // keep all bodies of a scene; otherwise the largest
-  bool unite = false;      // make one surface of parts that overlap or lie in one another
+  bool wrap = false;         // where the steps fail, move or fill too much, the mesh is wrapped
+  bool all_parts = false;    // keep all bodies of a scene; otherwise the largest
+  bool unite = false;        // make one surface of parts that overlap or lie in one another
+  bool fill_unseen = false;  // a surface through points may be a guess where no point saw it
   // The caller found that the mesh passes through itself.
   bool crossings = false;
   // What messages say to do where a wrap would help.
@@ -75,16 +76,22 @@ struct MeshRepair {
   std::int64_t cavities = 0;
   std::int64_t undecided_parts = 0;  // of which finding this out would have taken too long
   bool united = false;               // overlapping and nested parts are one surface now
+  // Of a surface through points; lengths in the unit of the mesh.
+  std::int64_t points = 0, stray_points = 0;
+  Vec3d stray;                                         // the farthest of them
+  double noise = 0.0;                                  // root mean square of the points' distances from it
+  double farthest_point = 0.0, farthest_ground = 0.0;  // of the points from it, and of it from the points
+  double unseen_share = 0.0;                           // of the ground that no point saw
 };
 
-// Reads a mesh. Where a wrap is allowed also points: .xyz, or a file of points with normals. Throws
-// InputError as read_mesh does.
+// Reads a mesh. Where a wrap is allowed also points, as read_cloud() does. Throws InputError as read_mesh
+// does.
 TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap);
 
-// Repairs a mesh, or wraps points where it has no triangles and a wrap is allowed. A mesh that is a closed
-// body of one part comes back as it is. Throws InputError "NAME: what is wrong; what to do" for what cannot
-// be repaired, and WorkError where progress asks to stop. The result depends on the mesh and the options
-// alone. The work is bounded by the number of facets: a mesh too damaged for that is refused.
+// Repairs a mesh, or lays a surface through points where it has no triangles and a wrap is allowed. A mesh
+// that is a closed body of one part comes back as it is. Throws InputError "NAME: what is wrong; what to do"
+// for what cannot be repaired, and WorkError where progress asks to stop. The result depends on the mesh and
+// the options alone. The work is bounded by the number of facets: a mesh too damaged for that is refused.
 MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairOptions& options,
                        const Progress& progress = {});
 

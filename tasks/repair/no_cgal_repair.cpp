@@ -24,6 +24,15 @@ TriangleMesh alpha_wrapped(const TriangleMesh& /*mesh*/, double /*alpha*/, doubl
   refuse(name);
 }
 
+std::vector<Vec3d> jet_smoothed(std::vector<Vec3d> /*points*/, int /*neighbours*/) { refuse("points"); }
+
+std::vector<Vec3d> jet_normals(const std::vector<Vec3d>& /*points*/, int /*neighbours*/) { refuse("points"); }
+
+TriangleMesh poisson_surface(const std::vector<Vec3d>& /*points*/, const std::vector<Vec3d>& /*normals*/,
+                             double /*facet*/, double /*error*/, const std::string& name) {
+  refuse(name);
+}
+
 TriangleMesh united(const TriangleMesh& /*mesh*/, const std::string& name, const Progress& /*progress*/) {
   refuse(name);
 }

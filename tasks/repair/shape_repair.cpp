@@ -24,11 +24,17 @@ void ShapeRepair::add_to(OptionTable& app, bool for_bodies) {
       app.add_flag("--strict", strict,
                    for_bodies ? "refuse a mesh that is not closed, in place of its repair"
                               : "take a mesh as it is, in place of the repair of its cracks and small holes");
-  app.add_flag("--wrap", wrap,
-               "where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of "
-               "it, or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
-               "without faces (.xyz) are wrapped, too")
-      .excludes(refuse);
+  const Option wrapping =
+      app.add_flag(
+             "--wrap", wrap,
+             "where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of "
+             "it, or fails: wrap the mesh at 1/200 of the diagonal, which takes some ten seconds. Points "
+             "without faces (.xyz, .pts, .asc, .ply and others) get a Poisson surface, which averages their "
+             "noise")
+          .excludes(refuse);
+  app.add_flag("--fill-unseen", fill_unseen,
+               "take the surface through points also where they saw less than two thirds of the ground")
+      .needs(wrapping);
   app.add_flag("--union", unite,
                "make one surface of parts that overlap or lie inside one another, so that no rock counts "
                "twice and no wall is buried; cavities stay")
@@ -42,6 +48,7 @@ void ShapeRepair::add_to(OptionTable& app, bool for_bodies) {
 RepairOptions ShapeRepair::options() const {
   RepairOptions options;
   options.wrap = wrap;
+  options.fill_unseen = fill_unseen;
   options.all_parts = all_parts;
   options.unite = unite;
   return options;

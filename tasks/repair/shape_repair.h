@@ -1,4 +1,5 @@
-// What programs do with a mesh that is no closed body: --strict, --wrap, --union and --all-parts.
+// What programs do with a mesh that is no closed body: --strict, --wrap,
+// --fill-unseen, --union and --all-parts.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +12,13 @@
 namespace astrolith {
 
 struct ShapeRepair {
-  bool strict = false, wrap = false, unite = false, all_parts = false;
+  bool strict = false, wrap = false, fill_unseen = false, unite = false, all_parts = false;
 
   // Programs of surfaces take all bodies of a scene: they have no --all-parts.
   void add_to(OptionTable& app, bool for_bodies = true);
   RepairOptions options() const;
 
-  // Reads a mesh. With --wrap also points: .xyz, or a file of points with normals.
+  // Reads a mesh. With --wrap also points, as read_cloud() does.
   TriangleMesh read(const std::filesystem::path& file) const;
 
   // The closed body of a mesh in `unit`. Says what was done; `figures` gets the fields repair.* of the

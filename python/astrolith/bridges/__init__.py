@@ -7,7 +7,7 @@ Nothing of these packages is loaded before a function needs it. Each is an optio
 from __future__ import annotations
 
 from astrolith.bridges.collision import convex_parts, hull, write_collision, write_model
-from astrolith.bridges.datasets import Bodies, torch_dataset
+from astrolith.bridges.datasets import Bodies, torch_dataset, torch_loader
 from astrolith.bridges.finished_set import FinishedSet
 from astrolith.bridges.geo import to_xarray, write_geotiff
 from astrolith.bridges.meshes import (
@@ -18,6 +18,7 @@ from astrolith.bridges.meshes import (
     to_pyvista,
     to_trimesh,
 )
+from astrolith.bridges.points import read_points
 from astrolith.bridges.shapes import shape_harmonics
 from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
 from astrolith.bridges.usd import write_usd
@@ -31,12 +32,14 @@ __all__ = [
     "from_pyvista",
     "from_trimesh",
     "hull",
+    "read_points",
     "shape_harmonics",
     "to_open3d",
     "to_pyvista",
     "to_trimesh",
     "to_xarray",
     "torch_dataset",
+    "torch_loader",
     "write_collision",
     "write_dsk",
     "write_geotiff",

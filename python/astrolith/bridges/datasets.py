@@ -126,7 +126,7 @@ def _sampled(body: Mesh, count: int, seed: int) -> tuple[npt.NDArray[np.float32]
 def torch_dataset(bodies: Union[Bodies, FinishedSet], transform: Optional[Callable[[dict[str, Any]], Any]] = None) -> Any:
     """Make a ``torch.utils.data.Dataset`` of bodies, or of a finished set, whose arrays are tensors.
 
-    A ``DataLoader`` with workers must start them with ``multiprocessing_context="spawn"``. With `points` the items of
+    A ``DataLoader`` with workers must start them with ``multiprocessing_context="spawn"``, as :func:`torch_loader` does. With `points` the items of
     a batch have the same shape; meshes need a ``batch_size`` of None or a ``collate_fn``.
 
     Parameters
@@ -143,3 +143,25 @@ def torch_dataset(bodies: Union[Bodies, FinishedSet], transform: Optional[Callab
     from astrolith.bridges._torch import TorchBodies
 
     return TorchBodies(bodies, transform)
+
+
+def torch_loader(
+    bodies: Union[Bodies, FinishedSet],
+    transform: Optional[Callable[[dict[str, Any]], Any]] = None,
+    *,
+    num_workers: int = 0,
+    **options: Any,
+) -> Any:
+    """Make a ``torch.utils.data.DataLoader`` of :func:`torch_dataset`, whose workers start by ``spawn``.
+
+    A worker that is forked lacks the threads of its parent, and is refused.
+
+    Parameters
+    ----------
+    num_workers, options
+        Of the ``DataLoader``.
+    """
+    torch = required("torch", "torch")
+    if num_workers > 0:
+        options.setdefault("multiprocessing_context", "spawn")
+    return torch.utils.data.DataLoader(torch_dataset(bodies, transform), num_workers=num_workers, **options)

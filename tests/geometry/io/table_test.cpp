@@ -63,6 +63,41 @@ TEST_F(Tables, PointsByTheNamesOfTheirColumns) {
   EXPECT_EQ(points("3 0 0 255 0 0\n", "", "cloud.xyz").points.size(), 1u);
 }
 
+TEST_F(Tables, CloudsOfPointsHaveMoreColumnsAndHeaders) {
+  const auto cloud = [&](const std::string& name, const std::string& text) {
+    return read_cloud(folder_.write(name, text));
+  };
+  const auto expect_cloud = [&](const std::string& name, const std::string& text) {
+    const TriangleMesh read = cloud(name, text);
+    ASSERT_EQ(read.vertices.size(), 2u) << text;
+    EXPECT_EQ(read.vertices[0], (Vec3d{3, 0, 0})) << text;
+    EXPECT_EQ(read.vertices[1], (Vec3d{0, 4, 0})) << text;
+    EXPECT_TRUE(read.triangles.empty());
+  };
+  expect_cloud("a.xyz", "//X Y Z\n3 0 0\n0 4 0\n");
+  expect_cloud("a.asc", "//X Y Z R G B Nx Ny Nz\n3 0 0 9 9 9 1 0 0\n0 4 0 9 9 9 0 1 0\n");
+  expect_cloud("a.asc", "//Y X Z\n0 3 0\n4 0 0\n");
+  expect_cloud("a.pts", "2\n3 0 0 -1203 10 20 30\n0 4 0 -1100 10 20 30\n");
+  expect_cloud("a.xyzn", "3 0 0 1 0 0\n0 4 0 0 1 0\n");
+  expect_cloud("a.xyzrgb", "3 0 0 1 .5 0\n0 4 0 0 1 0\n");
+  expect_cloud("a.csv", "X,Y,Z,Intensity\n3,0,0,7\n0,4,0,8\n");
+  expect_cloud("a.txt", "3 0 0\n0 4 0\n");
+  expect_cloud("a.txt", "3 0 0 1 0 0\n0 4 0 0 1 0\n");
+  expect_cloud("a.obj", "v 3 0 0\nv 0 4 0\n");
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
+  expect_cloud("a.ply", ply + "end_header\n3 0 0\n0 4 0\n");
+  const std::string normals = "property float nx\nproperty float ny\nproperty float nz\nend_header\n";
+  EXPECT_EQ(cloud("a.ply", ply + normals + "3 0 0 2 0 0\n0 4 0 0 .5 0\n").normals,
+            (std::vector<Vec3d>{{1, 0, 0}, {0, 1, 0}}));
+  EXPECT_TRUE(cloud("a.ply", ply + normals + "3 0 0 0 0 0\n0 4 0 0 1 0\n").normals.empty());
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    return testing::refusal_text([&] { cloud(name, text); });
+  };
+  EXPECT_NE(refused("a.txt", "1 3 0 0\n2 0 4 0\n").find("counts the lines"), std::string::npos);
+  EXPECT_NE(refused("a.las", "LASF").find("read_points"), std::string::npos);
+}
+
 TEST_F(Tables, OtherColumnsAreRefused) {
   expect_refused("1,3,0,0\n2,0,4,0\n", "line 1: has 4 columns where 3 (x, y, z) are due; name the columns");
   expect_refused("3,0\n", "has 2 columns where 3 (x, y, z) are due; complete the line");

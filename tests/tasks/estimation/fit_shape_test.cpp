@@ -352,7 +352,7 @@ TEST_F(FitShape, PointsAreWrappedLong) {
   write("egg.xyz", points);
   const std::string end = " -o t.csv --packing-only --spheres 4";
   refuse("egg.xyz" + end, "egg.xyz");
-  EXPECT_TRUE(has(succeed("egg.xyz --wrap" + end), "egg.xyz: wrapped at"));
+  EXPECT_TRUE(has(succeed("egg.xyz --wrap" + end), "egg.xyz: surface through"));
 }
 
 TEST_F(FitShape, BadMeshesAreRefused) {

@@ -298,15 +298,69 @@ TEST(MeshRepair, WrapsWhatCannotBeClosedLong) {
   EXPECT_LE(repair.moved, kMostMoved * repair.diagonal);
 }
 
-TEST(MeshRepair, WrapsPoints) {
+// Points of an ellipsoid that are spread evenly, with noise along x, y and z.
+TriangleMesh cloud_of(int count, double noise, double least_x = -2.0) {
   TriangleMesh cloud;
-  cloud.vertices = icosphere(4).vertices;
+  const auto deviate = [](int i, int axis) {
+    double sum = -6.0;
+    for (int k = 0; k < 12; ++k) sum += static_cast<double>(unit_float(hash_cell(7U, i, axis, k)));
+    return sum;
+  };
+  for (int i = 0; i < count; ++i) {
+    const double z = (2.0 * i + 1.0) / count - 1.0, angle = 2.399963229728653 * i;
+    const double across = std::sqrt(1.0 - z * z);
+    const Vec3d p{1.5 * across * std::cos(angle), 1.2 * across * std::sin(angle), z};
+    if (p.x > least_x)
+      cloud.vertices.push_back(p + noise * Vec3d{deviate(i, 0), deviate(i, 1), deviate(i, 2)});
+  }
+  return cloud;
+}
+const double kEllipsoid = 4.0 / 3.0 * std::numbers::pi * 1.5 * 1.2;
+
+TEST(MeshRepair, LaysASurfaceThroughPoints) {
+  const TriangleMesh cloud = cloud_of(3000, 0.0);
   EXPECT_TRUE(has(refusal(cloud), "body.obj: holds points without faces; "));
   RepairOptions options;
   options.wrap = true;
   const MeshRepair repair = repaired(cloud, options);
-  EXPECT_TRUE(repair.wrapped && is_closed_body(repair.mesh));
-  EXPECT_NEAR(volume(repair.mesh) / volume(icosphere(4)), 1.0, 0.03);
+  EXPECT_TRUE(!repair.wrapped && repair.points == 3000 && is_closed_body(repair.mesh));
+  EXPECT_NEAR(volume(repair.mesh) / kEllipsoid, 1.0, 0.004);
+  EXPECT_EQ(repair.stray_points, 0);
+  EXPECT_LT(repair.unseen_share, 1e-9);
+  EXPECT_EQ(repaired(cloud, options).mesh.vertices, repair.mesh.vertices);
+}
+
+TEST(MeshRepair, AveragesTheNoiseOfPointsAndStatesIt) {
+  RepairOptions options;
+  options.wrap = true;
+  TriangleMesh cloud = cloud_of(6000, 0.015);  // .5 % of the length
+  cloud.vertices.push_back({9.0, 9.0, 9.0});
+  cloud.vertices.push_back({0.0, 0.0, 2.0});
+  const MeshRepair repair = repaired(cloud, options);
+  EXPECT_NEAR(volume(repair.mesh) / kEllipsoid, 1.0, 0.004);
+  EXPECT_NEAR(repair.noise, 0.015, 0.002);
+  EXPECT_EQ(repair.stray_points, 2);
+  EXPECT_TRUE(has(repair_words(repair, "m"), "2 stray points left out, such as that at 9 9 9"));
+  double off = 0.0;
+  for (const Vec3d& p : repair.mesh.vertices) {
+    const double level = std::sqrt(squared_norm(Vec3d{p.x / 1.5, p.y / 1.2, p.z}));
+    const double slope = norm(Vec3d{p.x / 2.25, p.y / 1.44, p.z}) / level;
+    off += std::pow((level - 1.0) / slope, 2.0);
+  }
+  EXPECT_LT(std::sqrt(off / static_cast<double>(repair.mesh.vertices.size())), 0.5 * 0.015);
+}
+
+TEST(MeshRepair, RefusesWhatPointsHaveNotSeen) {
+  RepairOptions options;
+  options.wrap = true;
+  const TriangleMesh half = cloud_of(4000, 0.0, 0.0);
+  EXPECT_TRUE(has(refusal(half, options), "--fill-unseen"));
+  options.fill_unseen = true;
+  EXPECT_NEAR(repaired(half, options).unseen_share, 0.5, 0.1);
+  options.fill_unseen = false;
+  const MeshRepair most = repaired(cloud_of(4000, 0.0, -1.2), options);
+  EXPECT_NEAR(most.unseen_share, 0.08, 0.03);
+  EXPECT_TRUE(has(repair_words(most, "m"), "of the ground, which is a guess"));
 }
 
 TEST(MeshRepair, RemovesACrossingTheCallerFound) {
