@@ -1,7 +1,5 @@
 #include "geometry/surface/surface_tree.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/surface/embree_internal.h"
 #include "geometry/surface/triangle_scene.h"
 #include "numerics/errors.h"
 

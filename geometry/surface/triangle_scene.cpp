@@ -1,9 +1,8 @@
 #include "geometry/surface/triangle_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 
+#include "geometry/surface/embree_internal.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

@@ -24,7 +24,7 @@ class TriangleScene {
   Vec3d from_scene(const Vec3d& p) const { return (1.0 / scale_) * p + center_; }
   // Scene lengths per mesh length.
   double scale() const { return scale_; }
-  // An RTCScene of <embree3/rtcore.h>, which lives as long as this object.
+  // An RTCScene of Embree, which lives as long as this object.
   RTCSceneTy* handle() const { return scene_.get(); }
 
  private:

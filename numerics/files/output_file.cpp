@@ -237,11 +237,13 @@ void OutputFile::write(const void* data, std::size_t bytes) {
 void OutputFile::append_file(int descriptor, std::uint64_t bytes) {
   if (std::fflush(file_.get()) != 0) fail();
   off_t from = 0;
+#ifdef __linux__
   ssize_t copied = 1;
   while (bytes > 0 && copied > 0) {  // the system copies it, where the file system lets it
     copied = ::copy_file_range(descriptor, &from, ::fileno(file_.get()), nullptr, bytes, 0);
     bytes -= copied > 0 ? static_cast<std::uint64_t>(copied) : 0;
   }
+#endif
   if (::fseeko(file_.get(), 0, SEEK_END) != 0) fail();
   std::vector<char> block(std::min<std::uint64_t>(bytes, std::uint64_t{1} << 16));
   while (bytes > 0) {
@@ -314,7 +316,11 @@ UnsyncedOutputs::~UnsyncedOutputs() { --g_unsynced; }
 void sync_file_system(const fs::path& file) {
   const int descriptor = g_unsynced > 0 ? -1 : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return;
+#ifdef __linux__
   const bool done = on_disk(::syncfs(descriptor));
+#else
+  const bool done = on_disk(::fsync(descriptor));
+#endif
   const std::string reason = std::strerror(errno);
   ::close(descriptor);
   if (!done) throw WorkError(file.string() + ": the disk did not keep it (" + reason + ")");

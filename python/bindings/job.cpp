@@ -1,8 +1,11 @@
 #include "python/bindings/job.h"
 
 #include <nanobind/stl/string.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <list>
 #include <regex>
@@ -53,6 +56,17 @@ void look_up(JobState& state, const nb::object& callback) {
   if (callback(news->first, news->second).is(nb::handle(Py_False))) state.stop();
 }
 
+// A process that is forked from one at work lacks its threads, for which TBB would wait for ever.
+void require_own_threads() {
+  static std::atomic<pid_t> first{0};
+  pid_t seen = 0;
+  if (first.compare_exchange_strong(seen, ::getpid()) || seen == ::getpid()) return;
+  throw WorkError(
+      "this process was forked from one that had used astrolith, and lacks its threads; start workers by "
+      "spawn "
+      "(multiprocessing.get_context(\"spawn\"))");
+}
+
 }  // namespace
 
 Progress JobState::progress(const std::string& stage) {
@@ -88,6 +102,7 @@ void run(const std::shared_ptr<JobState>& state, nb::object callback, int thread
   if (!callback.is_none() && !PyCallable_Check(callback.ptr())) {
     throw nb::type_error("progress: must be a function of a share and a text, or None");
   }
+  require_own_threads();
   forget_ended_work();
   std::thread worker([state, threads, work = std::move(work)]() mutable {
     std::exception_ptr error;

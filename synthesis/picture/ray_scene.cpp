@@ -1,9 +1,8 @@
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "geometry/surface/embree_internal.h"
 #include "numerics/errors.h"
 #include "synthesis/picture/ray_scene.h"
 
@@ -49,22 +48,18 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction) {
 RayScene::RayScene(const TriangleMesh& mesh) : scene_(unit_scene(mesh)) {}
 
 RayHit RayScene::first_hit(const Vec3f& origin, const Vec3f& direction) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit query{};
   query.ray = make_ray(origin, direction);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_.handle(), &context, &query);
+  intersect_ray(scene_.handle(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const Vec3f normal = normalized(Vec3f{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
   return {true, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v, normal};
 }
 
 bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray = make_ray(origin, direction);
-  rtcOccluded1(scene_.handle(), &context, &ray);
+  occlude_ray(scene_.handle(), ray);
   return ray.tfar < 0.0f;
 }
 
