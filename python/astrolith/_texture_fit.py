@@ -42,7 +42,8 @@ class TextureFit:
 
 
 def _planes(image: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """(planes, height, width) float64, full scale 1."""
+    """(planes, height, width) float64, full scale 1. A pixel that is masked is NaN."""
+    masked = np.ma.isMaskedArray(image) and np.ma.getmaskarray(image)
     array = np.asarray(image)
     if array.ndim == 3 and array.shape[2] == 4:
         raise ValueError("image: has four channels; numpy.ascontiguousarray(image[..., :3]) leaves out alpha")
@@ -52,14 +53,18 @@ def _planes(image: npt.ArrayLike) -> npt.NDArray[np.float64]:
         raise ValueError("image: is not C-contiguous; pass numpy.ascontiguousarray(image)")
     if array.dtype in (np.uint8, np.uint16):
         array = array / float(np.iinfo(array.dtype).max)
+    elif array.dtype.kind == "i":
+        array = array.astype(np.float64)  # heights, as in a file
     elif array.dtype not in (np.float32, np.float64):
-        raise ValueError(f"image: has the dtype {array.dtype}; it must be uint8, uint16, float32 or float64")
+        raise ValueError(f"image: has the dtype {array.dtype}; it must be uint8, uint16, signed integers, float32 or float64")
+    if masked is not False:
+        array = np.where(masked, np.nan, array)
     if array.size == 0:
         raise ValueError("image: is empty; it must have at least 32 x 32 pixels")
     if array.size > 3 * 2**26:
         raise ValueError(f"image: has {array.size} values; it must have at most 2**26 pixels")
-    if not (np.abs(array.max()) <= 1e5 and np.abs(array.min()) <= 1e5):
-        raise ValueError("image: holds values that are not finite or beyond 1e5")
+    if np.isnan(array).all() or not (np.abs(np.nanmax(array)) <= 1e5 and np.abs(np.nanmin(array)) <= 1e5):
+        raise ValueError("image: holds values that are infinite or beyond 1e5, or none at all")
     planes = array[None] if array.ndim == 2 else np.moveaxis(array, 2, 0)
     return np.ascontiguousarray(planes, dtype=np.float64)
 
@@ -83,7 +88,8 @@ def fit_texture(
     ----------
     image
         The name of a file that the program reads, or (height, width) or (height, width, 3) uint8, uint16 (full scale
-        becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
+        becomes 1), signed integers or floats, at least 32 x 32. Pixels that are NaN or masked are missing. The recipe of a
+        file has the bytes that the program writes.
     spectrum
         Whether the result shall have the power spectrum that ``fit_gabor --spectrum`` writes; or its file.
     threads

@@ -131,6 +131,22 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
 
 
+@pytest.mark.parametrize("gap", ["mask", "mask of whole numbers", "NaN"])
+def test_masked_pixels_are_missing(gap):
+    heights = np.random.default_rng(3).normal(350, 7, (64, 64)).astype(np.float32).round()
+    hole = np.zeros(heights.shape, bool)
+    hole[10:30, 20:40] = True
+    known = heights[~hole].astype(float)
+    image = {
+        "mask": lambda: np.ma.masked_array(np.where(hole, np.float32(-9999), heights), hole),
+        "mask of whole numbers": lambda: np.ma.masked_equal(np.where(hole, -9999, heights).astype(np.int16), -9999),
+        "NaN": lambda: np.where(hole, np.float32(np.nan), heights),
+    }[gap]()
+    figures = astrolith.fit_texture(image, lobes=6).figures
+    assert figures.image.missing == pytest.approx(hole.mean())
+    assert np.sqrt(figures.channels[0].pixel_variance) == pytest.approx(known.std(), rel=0.05)
+
+
 def test_a_surface_through_points():
     n = 4000
     z, angle = (2 * np.arange(n) + 1) / n - 1, 2.399963229728653 * np.arange(n)

@@ -11,6 +11,7 @@
 
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/missing_ground.h"
+#include "estimation/gabor/image/square_pixels.h"
 #include "estimation/gabor/photo_fit.h"
 #include "estimation/gabor/spectrum/photo_period.h"
 #include "numerics/errors.h"
@@ -23,6 +24,7 @@
 #include "numerics/sample_statistics.h"
 #include "tasks/estimation/photo_recipe.h"
 #include "tasks/job/output_names.h"
+#include "tasks/job/pixel_size.h"
 #include "tasks/job/words.h"
 
 namespace astrolith {
@@ -90,11 +92,29 @@ void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
 void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
       .check(in_range(1, 1000));
-  app.add_option("--mm-per-px", o.mm_per_px,
-                 "size of an image pixel on the ground in millimetres; without it the size that the file "
-                 "states, else "
-                 "lengths in the recipe are pixels")
+  const Option width =
+      app.add_option("--mm-per-px", o.mm_per_px,
+                     "size of an image pixel on the ground in millimetres; without it the size that the file "
+                     "states, else "
+                     "lengths in the recipe are pixels")
+          .check(above_zero())
+          .default_text("");
+  app.add_option(
+         "--mm-per-px-y", o.mm_per_px_y,
+         "height of a pixel where it is not its width; pixels then become square ones with the longer side")
       .check(above_zero())
+      .default_text("")
+      .needs(width);
+  app.add_option(
+         "--height-unit", o.height_unit,
+         "the values of the file are heights in this unit, such as ft, dm or US survey foot, whatever the "
+         "file says")
+      .default_text("");
+  app.add_option(
+         "--raw-size", o.raw_size,
+         "the file holds numbers alone, in so many columns and rows: floats of 32 bits (.r32), or whole "
+         "numbers of 16 or 8 bits, the lowest byte first")
+      .placeholder("WxH")
       .default_text("");
   app.add_option("--unit", o.unit, "length unit of the recipe where the size of pixels is known")
       .check(one_of({"m", "km"}));
@@ -142,11 +162,24 @@ void add_output_options(OptionTable& app, PhotoFitArguments& o) {
       .writes();
 }
 
+// What the options say of the file that the file does not say. Throws InputError for an unknown unit.
+ImageWords image_words(const PhotoFitArguments& o) {
+  ImageWords words{o.height_unit, {}};
+  if (!o.height_unit.empty() && !(unit_metres(o.height_unit) > 0.0))
+    throw InputError("--height-unit: \"" + o.height_unit +
+                     "\" is no unit of length; write m, km, cm, ft, ftUS, in ...");
+  if (o.raw_size.empty()) return words;
+  constexpr int kMostSide = 1 << 20;
+  const PixelSize size = parse_pixel_size("--raw-size", o.raw_size, 1, kMostSide);
+  words.raw_size = ImageSize{size.width, size.height};
+  return words;
+}
+
 // Predicts the memory of the fit before the image is decoded. Throws InputError where the fit needs more than
 // allowed.
 void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions& photo) {
   const ImageSize size = o.in_memory ? ImageSize{o.in_memory->front().width, o.in_memory->front().height}
-                                     : read_image_size(o.image);
+                                     : read_image_size(o.image, image_words(o));
   const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty(), o.model != "gabor");
   job.summary["predicted"] = {{"peak_bytes", predicted}};
   if (predicted > memory_limit(o.max_memory_gb)) {
@@ -188,38 +221,60 @@ PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
           in_metres ? 1.0 / metres_per_unit(o.unit) : 1.0};
 }
 
-// The side of a pixel in metres that the file states.
-double stated_side(const StatedScale& scale, const std::string& name) {
+// Ground that would be steeper than this, on average, is in another unit than its pixels.
+constexpr double kSteepest = 5.0;
+
+double mean_step(const GreyImage& image) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < image.values.size(); ++i)
+    sum += std::abs(image.values[i] - image.values[i - 1]);
+  return sum / static_cast<double>(image.values.size());
+}
+
+// Refuses a size of pixels that the file states and no program should guess.
+void require_known_sides(const StatedScale& scale, const GreyImage& heights, const std::string& name) {
   if (scale.unknown) {
     throw InputError(name +
                      ": PROJ cannot tell how large its pixels are on the ground; set PROJ_DATA to the folder "
                      "of proj.db if that is missing, or give --mm-per-px");
   }
-  if (scale.like_degrees) {
+  const bool steep = scale.heights && mean_step(heights) > kSteepest * scale.pixel_width;
+  if (scale.like_degrees || (scale.perhaps_degrees && steep)) {
     throw InputError(fmt::format(
         "{}: its pixels of {:.4g} may be degrees, and no frame says so; give --mm-per-px, or state a frame "
         "(gdal_edit.py -a_srs)",
         name, scale.pixel_width));
   }
-  constexpr double kNearlySquare = 1.05;
-  const auto [less, more] = std::minmax(scale.pixel_width, scale.pixel_height);
-  if (scale.sheared || more > kNearlySquare * less) {
-    throw InputError(fmt::format(
-        "{}: its pixels are {:.4g} m wide and {:.4g} m high{}; project it to square ones (gdalwarp), or give "
-        "--mm-per-px",
-        name, scale.pixel_width, scale.pixel_height, scale.sheared ? ", and slanted" : ""));
+  if (scale.sheared) {
+    throw InputError(
+        fmt::format("{}: its pixels are {:.4g} m wide and {:.4g} m high, and slanted; project it to square "
+                    "ones (gdalwarp), or "
+                    "give --mm-per-px",
+                    name, scale.pixel_width, scale.pixel_height));
   }
   constexpr double kSmallest = 1e-6, kLargest = 1e6;
-  const double side = std::sqrt(less * more);
-  if (side >= kSmallest && side <= kLargest) return side;
+  const double side = std::sqrt(scale.pixel_width * scale.pixel_height);
+  if (side >= kSmallest && side <= kLargest) return;
   throw InputError(
       fmt::format("{}: states pixels of {:.4g} m, which no map has; give --mm-per-px", name, side));
+}
+
+// The side in metres of the square pixels that the planes then have.
+double make_square(std::vector<GreyImage>& planes, double width, double height,
+                   std::vector<std::string>& words) {
+  constexpr double kNearlySquare = 1.05;
+  const auto [less, more] = std::minmax(width, height);
+  if (more <= kNearlySquare * less) return std::sqrt(less * more);
+  for (GreyImage& plane : planes) plane = with_square_pixels(plane, width, height);
+  words.push_back(fmt::format("pixels of {:.5g} x {:.5g} m become square ones of {:.5g} m, {} x {} of them",
+                              width, height, more, planes.front().width, planes.front().height));
+  return more;
 }
 
 std::string in_brackets(const std::string& words) { return words.empty() ? "" : " (" + words + ")"; }
 
 // What the file states of its scale is taken where no option gives it, and said.
-void take_stated_scale(Job& job, const ImageFile& photo, PhotoFitArguments& o) {
+void take_stated_scale(Job& job, ImageFile& photo, PhotoFitArguments& o) {
   const double missing = missing_share(photo.planes.front());
   o.has_gaps = missing > 0.0;
   std::vector<std::string> words;
@@ -229,11 +284,14 @@ void take_stated_scale(Job& job, const ImageFile& photo, PhotoFitArguments& o) {
       words.push_back(fmt::format("--mm-per-px {:g} counts, and not the file's pixels of {:.7g} m{}",
                                   o.mm_per_px, s.pixel_width, in_brackets(s.pixel_source)));
     } else {
-      const double side = stated_side(s, o.image);
+      require_known_sides(s, photo.planes.front(), o.image);
+      const double side = make_square(photo.planes, s.pixel_width, s.pixel_height, words);
       o.mm_per_px = 1e3 * side;
       words.push_back(fmt::format("pixels of {:.7g} m{}", side, in_brackets(s.pixel_source)));
     }
   }
+  if (o.mm_per_px_y > 0.0)
+    o.mm_per_px = 1e3 * make_square(photo.planes, 1e-3 * o.mm_per_px, 1e-3 * o.mm_per_px_y, words);
   if (photo.scale && photo.scale->heights) {
     o.heights_in_metres = true;
     const double rms = std::sqrt(known_variance(photo.planes.front()));
@@ -430,8 +488,13 @@ FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
   require_outputs(o);
   if (!o.in_memory) o.image_sha256 = file_sha256(o.image);
   predict_memory(job, o, photo_options(job, o));
-  ImageFile photo = o.in_memory ? ImageFile{*o.in_memory, {}}
-                                : read_image(o.image, o.channels == "pca", job.progress("photo"));
+  ImageFile photo;
+  if (o.in_memory) {
+    photo.planes = *o.in_memory;
+    complete_planes(photo.planes, o.image, job.progress("photo"));
+  } else {
+    photo = read_image(o.image, o.channels == "pca", job.progress("photo"), image_words(o));
+  }
   for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
   take_stated_scale(job, photo, o);
   const TextureFitOptions options{model_named(o.model), variant_named(o.border), photo_options(job, o),

@@ -56,6 +56,9 @@ struct PhotoFitArguments {
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";
   double mm_per_px = 0.0;                            // 0 = no physical scale
+  double mm_per_px_y = 0.0;                          // of the height of a pixel; 0 = its width
+  std::string height_unit;                           // empty: as the file says
+  std::string raw_size;                              // "WxH" of a file of numbers alone; empty: it is none
   double height_rms = -1.0;                          // negative = the exemplar's own
   bool heights_in_metres = false, has_gaps = false;  // what the file is found to be while it is read
   double max_memory_gb = 0.0;                        // 0 = three quarters of the machine's

@@ -79,7 +79,8 @@ std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddleP
     return GroundStep{rounded(metres.east * (middle.x[k] - middle.x[0])),
                       rounded(metres.north * (middle.y[k] - middle.y[0]))};
   };
-  GroundSteps steps{step(1), step(2), ""};
+  GroundSteps steps = in_plane;
+  steps.column = step(1), steps.row = step(2);
   const double width = steps.column.length(), height = steps.row.length();
   const auto differs = [&](double side) { return !(std::abs(side - plain) <= kStretch * plain); };
   if (!(width < 4.0 * plain && height < 4.0 * plain)) return {};
@@ -88,12 +89,7 @@ std::optional<GroundSteps> unprojected(const OGRSpatialReference& frame, MiddleP
   return steps;
 }
 
-}  // namespace
-
-std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
-  GeoTransform t = kNoTransform;
-  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
-  if (raster.GetGeoTransform(t.data()) != CE_None && t == kNoTransform) return {};
+std::optional<GroundSteps> steps_without_turn(GDALDataset& raster, const GeoTransform& t) {
   const OGRSpatialReference* frame = raster.GetSpatialRef();
   const MiddlePixels middle = middle_pixels(raster, t);
   GroundStep unit{1.0, 1.0};
@@ -102,13 +98,16 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
     const bool like_degrees = t[0] != 0.0 && std::abs(middle.x[0]) <= 360.0 &&
                               std::abs(middle.y[0]) <= 90.0 && std::abs(t[1]) < 0.1;
     steps.like_degrees = like_a_globe(raster, t);
+    steps.perhaps_degrees = like_degrees;
     steps.source =
         like_degrees ? "no unit is stated; if they are degrees, give --mm-per-px" : "no unit is stated";
   } else if (frame->IsGeographic() != 0) {
     unit = degree_metres(*frame, middle.y[0]);
     steps.source = degrees_words(*frame);
   } else {
-    unit = {frame->GetLinearUnits(), frame->GetLinearUnits()};
+    const char* name = nullptr;
+    unit.east = unit.north = frame->GetLinearUnits(&name);
+    if (unit.east != 1.0 && name != nullptr) steps.plane_unit = name;
   }
   steps.column = {unit.east * t[1], unit.north * t[4]};
   steps.row = {unit.east * t[2], unit.north * t[5]};
@@ -120,6 +119,29 @@ std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
   steps.unknown = true;
   steps.source = "of a map that PROJ cannot evaluate";
   return steps;
+}
+
+}  // namespace
+
+std::optional<GroundSteps> ground_steps(GDALDataset& raster) {
+  GeoTransform t = kNoTransform;
+  // GDAL calls a transform invalid that has a size of pixels and no place on the ground.
+  if (raster.GetGeoTransform(t.data()) != CE_None && t == kNoTransform) return {};
+  std::optional<GroundSteps> steps = steps_without_turn(raster, t);
+  // A place in the picture itself is no place on the ground.
+  if (!steps || t == kNoTransform) return steps;
+  steps->west = t[1] < 0.0;
+  // Whether the map is the ground's mirror image once its columns run to the east.
+  steps->south = (t[1] * t[5] - t[2] * t[4]) * (steps->west ? -1.0 : 1.0) > 0.0;
+  return steps;
+}
+
+std::string vertical_unit(GDALDataset& raster) {
+  const OGRSpatialReference* frame = raster.GetSpatialRef();
+  if (frame == nullptr || frame->IsCompound() == 0) return "";
+  const char* name = nullptr;
+  frame->GetTargetLinearUnits("VERT_CS", &name);
+  return name == nullptr ? "" : name;
 }
 
 }  // namespace astrolith

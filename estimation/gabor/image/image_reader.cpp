@@ -73,7 +73,8 @@ Extremes find_extremes(const GreyImage& plane) {
 
 // Usual marks for no data that a file may store without naming them. One is taken for missing if it is the
 // lowest or, of heights, the largest value by more than all other values differ.
-std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
+// Where the file names its gaps, such a value counts, and is only said.
+std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster, bool& said_counts) {
   const auto [lowest, above, below, highest] = find_extremes(plane);
   constexpr double kMarks[] = {0.0, 999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0};
   constexpr double kRounded = 1e-6;  // of floats
@@ -86,6 +87,13 @@ std::optional<std::string> unmark(GreyImage& plane, const RasterFile& raster) {
       if (std::abs(raster.to_value(stored) - value) > kRounded * std::abs(value)) continue;
       // Black and saturated pixels have brightness.
       if (!heights && !(stored < 0.0)) continue;
+      if (raster.names_gaps()) {
+        // The ground of a cut-out may be a floor of one value.
+        if (said_counts) return {};
+        said_counts = true;
+        return fmt::format("{:g} lies far {} all other values and counts, since the file names other gaps",
+                           stored, where);
+      }
       std::replace(plane.values.begin(), plane.values.end(), value, std::numeric_limits<double>::quiet_NaN());
       return fmt::format(
           "{:g} lies far {} all other values and is taken for no data, though the file names none", stored,
@@ -158,14 +166,23 @@ void take_mean_away(GreyImage& heights) {
 
 }  // namespace
 
-ImageSize read_image_size(const std::filesystem::path& file) {
-  const RasterFile raster(file);
+ImageSize read_image_size(const std::filesystem::path& file, const ImageWords& words) {
+  const RasterFile raster(file, words);
   require_fitting(raster.width(), raster.height(), file);
   return {raster.width(), raster.height()};
 }
 
-ImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress) {
-  RasterFile raster(file);
+void complete_planes(std::vector<GreyImage>& planes, const std::string& name, const Progress& progress) {
+  join_missing(planes);
+  for (GreyImage& plane : planes) {
+    require_known(plane, name);
+    fill_missing(plane, {}, progress);
+  }
+}
+
+ImageFile read_image(const std::filesystem::path& file, bool colors, const Progress& progress,
+                     const ImageWords& words) {
+  RasterFile raster(file, words);
   require_fitting(raster.width(), raster.height(), file);
   ImageFile result = empty_planes(colors ? 3 : 1, static_cast<double>(raster.width()) * raster.height());
   raster.read(into(result.planes), progress);
@@ -174,17 +191,17 @@ ImageFile read_image(const std::filesystem::path& file, bool colors, const Progr
   for (GreyImage& plane : result.planes) {
     plane = upright(std::move(plane), raster.orientation());
     // One mark hides another.
-    while (const auto mark = unmark(plane, raster)) {
+    bool said_counts = false;
+    while (const auto mark = unmark(plane, raster, said_counts)) {
       if (&plane == &result.planes.front()) result.remarks.push_back(*mark);
     }
     require_usable(plane, raster, file.string());
   }
-  join_missing(result.planes);
+  complete_planes(result.planes, file.string(), progress);
   const bool heights = result.scale && result.scale->heights;
+  const bool on_ground = heights && (result.scale->pixel_width > 0.0 || !words.height_unit.empty());
   for (GreyImage& plane : result.planes) {
-    require_known(plane, file.string());
-    fill_missing(plane, {}, progress);
-    if (heights && result.scale->pixel_width > 0.0) take_mean_away(plane);
+    if (on_ground) take_mean_away(plane);
   }
   return result;
 }

@@ -2,12 +2,16 @@
 #include <cpl_error.h>
 #include <fmt/format.h>
 #include <gdal_frmts.h>
+#include <gdal_pam.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cctype>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -22,20 +26,60 @@
 namespace astrolith {
 namespace {
 
-// The formats that are read. None runs what a file says. Labels name the files of their pixels.
+// A library of GDAL that was built without a format lacks its function: the format is left out then.
+#pragma weak GDALRegister_GTiff
+#pragma weak GDALRegister_PNG
+#pragma weak GDALRegister_JPEG
+#pragma weak GDALRegister_WEBP
+#pragma weak GDALRegister_JP2OpenJPEG
+#pragma weak GDALRegister_FITS
+#pragma weak GDALRegister_HFA
+#pragma weak GDALRegister_netCDF
+#pragma weak GDALRegister_DTED
+#pragma weak GDALRegister_GSAG
+#pragma weak GDALRegister_GSBG
+#pragma weak GDALRegister_GS7BG
+#pragma weak GDALRegister_VRT
+#pragma weak GDALRegister_EXR
+#pragma weak GDALRegister_ISIS3
+#pragma weak GDALRegister_ISIS2
+#pragma weak GDALRegister_PDS
+#pragma weak GDALRegister_PDS4
+#pragma weak GDALRegister_VICAR
+#pragma weak GDALRegister_AAIGrid
+#pragma weak GDALRegister_SRTMHGT
+#pragma weak GDALRegister_ENVI
+#pragma weak GDALRegister_EHdr
+
+// The formats that are read. None runs what a file says. Labels name the files of their pixels. Formats that
+// are known by their own first bytes stand before those that a file beside the pixels describes.
 struct Format {
   const char* name;
   void (*register_driver)();
 };
-constexpr std::array kFormats{
-    Format{"GTiff", GDALRegister_GTiff},     Format{"ISIS3", GDALRegister_ISIS3},
-    Format{"ISIS2", GDALRegister_ISIS2},     Format{"PDS", GDALRegister_PDS},
-    Format{"PDS4", GDALRegister_PDS4},       Format{"VICAR", GDALRegister_VICAR},
-    Format{"ENVI", GDALRegister_ENVI},       Format{"EHdr", GDALRegister_EHdr},
-    Format{"FITS", GDALRegister_FITS},       Format{"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
-    Format{"AAIGrid", GDALRegister_AAIGrid}, Format{"HFA", GDALRegister_HFA},
-    Format{"PNG", GDALRegister_PNG},         Format{"JPEG", GDALRegister_JPEG},
-    Format{"WEBP", GDALRegister_WEBP},       Format{"SRTMHGT", GDALRegister_SRTMHGT}};
+constexpr Format kFormats[] = {{"GTiff", GDALRegister_GTiff},
+                               {"PNG", GDALRegister_PNG},
+                               {"JPEG", GDALRegister_JPEG},
+                               {"WEBP", GDALRegister_WEBP},
+                               {"JP2OpenJPEG", GDALRegister_JP2OpenJPEG},
+                               {"FITS", GDALRegister_FITS},
+                               {"HFA", GDALRegister_HFA},
+                               {"netCDF", GDALRegister_netCDF},
+                               {"DTED", GDALRegister_DTED},
+                               {"GSAG", GDALRegister_GSAG},
+                               {"GSBG", GDALRegister_GSBG},
+                               {"GS7BG", GDALRegister_GS7BG},
+                               {"VRT", GDALRegister_VRT},
+                               {"EXR", GDALRegister_EXR},
+                               {"ISIS3", GDALRegister_ISIS3},
+                               {"ISIS2", GDALRegister_ISIS2},
+                               {"PDS", GDALRegister_PDS},
+                               {"PDS4", GDALRegister_PDS4},
+                               {"VICAR", GDALRegister_VICAR},
+                               {"AAIGrid", GDALRegister_AAIGrid},
+                               {"SRTMHGT", GDALRegister_SRTMHGT},
+                               {"ENVI", GDALRegister_ENVI},
+                               {"EHdr", GDALRegister_EHdr}};
 
 // While an object of this class lives, this thread's GDAL prints nothing, starts no thread that would, writes
 // nothing beside its input and asks no network.
@@ -44,7 +88,9 @@ class QuietGdal {
   QuietGdal() {
     static std::once_flag registered;
     std::call_once(registered, [] {
-      for (const Format& format : kFormats) format.register_driver();
+      for (const Format& format : kFormats) {
+        if (format.register_driver != nullptr) format.register_driver();
+      }
     });
     CPLPushErrorHandler(CPLQuietErrorHandler);
   }
@@ -53,7 +99,13 @@ class QuietGdal {
   ~QuietGdal() { CPLPopErrorHandler(); }
 
  private:
-  CPLConfigOptionSetter no_notes_{"GDAL_PAM_ENABLED", "NO", false};
+  CPLConfigOptionSetter notes_{"GDAL_PAM_ENABLED", "YES",
+                               false};  // .aux.xml, of which open_raster() writes none
+  CPLConfigOptionSetter grid_type_{"AAIGRID_DATATYPE", "Float64",
+                                   false};  // "NaN" among whole numbers is none
+  CPLConfigOptionSetter no_python_{"GDAL_VRT_ENABLE_PYTHON", "NO", false};
+  CPLConfigOptionSetter raw_{"GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL",
+                             false};  // require_own_folder() looks
   CPLConfigOptionSetter no_folder_{"GDAL_DISABLE_READDIR_ON_OPEN", "TRUE", false};
   CPLConfigOptionSetter small_cache_{"GDAL_CACHEMAX", "128", false};  // MB; counts at its first use only
   CPLConfigOptionSetter no_network_{"CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false};
@@ -67,8 +119,70 @@ std::unique_ptr<GDALDataset> open_raster(const std::string& name) {
   std::vector<const char*> drivers;
   for (const Format& format : kFormats) drivers.push_back(format.name);
   drivers.push_back(nullptr);
-  return std::unique_ptr<GDALDataset>(
+  std::unique_ptr<GDALDataset> raster(
       GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
+  // What stands in .aux.xml is read, and nothing is written there.
+  if (auto* const noted = dynamic_cast<GDALPamDataset*>(raster.get()))
+    noted->SetPamFlags(noted->GetPamFlags() | GPF_NOSAVE);
+  return raster;
+}
+
+// An Arc ASCII grid whose first row begins with "nan", which GDAL 3.6 takes for a line of the header: the
+// raster is that of a copy in memory, with a blank in front of the row. Null for other files.
+std::unique_ptr<GDALDataset> open_grid_of_nan(const std::string& name) {
+  std::ifstream in(name, std::ios::binary);
+  std::string line;
+  const auto starts_with = [&](const char* word) { return STARTS_WITH_CI(line.c_str(), word); };
+  if (!std::getline(in, line) || (!starts_with("ncols") && !starts_with("nrows"))) return nullptr;
+  std::streamoff at = in.tellg();
+  while (std::getline(in, line) && !starts_with("nan") && line.size() < 200 && std::isalpha(line[0]) != 0)
+    at = in.tellg();
+  if (!starts_with("nan")) return nullptr;
+  const auto put = [](const std::string& file, const std::filesystem::path& from, std::streamoff blank) {
+    std::ifstream source(from, std::ios::binary);
+    std::string text((std::istreambuf_iterator<char>(source)), {});
+    if (blank > 0) text.insert(static_cast<std::size_t>(blank), 1, ' ');
+    VSILFILE* const made = VSIFOpenL(file.c_str(), "wb");
+    VSIFWriteL(text.data(), 1, text.size(), made);
+    VSIFCloseL(made);
+  };
+  static std::atomic<int> number{0};
+  const std::string copy = fmt::format("/vsimem/astrolith_{}/grid", number++);
+  put(copy + ".asc", name, at);
+  const std::filesystem::path frame = std::filesystem::path(name).replace_extension(".prj");
+  if (std::filesystem::is_regular_file(frame)) put(copy + ".prj", frame, 0);
+  std::unique_ptr<GDALDataset> raster = open_raster(copy + ".asc");
+  // An open file stays until it is closed.
+  VSIUnlink((copy + ".asc").c_str());
+  VSIUnlink((copy + ".prj").c_str());
+  return raster;
+}
+
+// Rows of raw numbers as a raster. Their type is that of the name's ending, or of the size of the file:
+// floats of 32 bits, or whole numbers of 8 or 16 bits, the lowest byte first.
+std::unique_ptr<GDALDataset> open_raw(const std::string& name, const ImageSize& size) {
+  const auto bytes = static_cast<double>(std::filesystem::file_size(name));
+  const double pixels = static_cast<double>(size.width) * size.height;
+  const bool floats = std::filesystem::path(name).extension() == ".r32" || bytes == 4.0 * pixels;
+  const int each = floats ? 4 : bytes == pixels ? 1 : 2;
+  if (bytes != each * pixels) {
+    throw InputError(
+        fmt::format("{}: has {} bytes, and {} x {} pixels would take {}; give another --raw-size", name,
+                    bytes, size.width, size.height, each * pixels));
+  }
+  const CPLString escaped = CPLString(name).replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  const std::string description = fmt::format(
+      "<VRTDataset rasterXSize=\"{0}\" rasterYSize=\"{1}\"><VRTRasterBand dataType=\"{2}\" band=\"1\" "
+      "subClass=\"VRTRawRasterBand\"><SourceFilename>{3}</SourceFilename><PixelOffset>{4}</PixelOffset>"
+      "<LineOffset>{5}</LineOffset><ByteOrder>LSB</ByteOrder></VRTRasterBand></VRTDataset>",
+      size.width, size.height,
+      floats      ? "Float32"
+      : each == 1 ? "Byte"
+                  : "UInt16",
+      escaped, each, static_cast<std::int64_t>(each) * size.width);
+  const char* const drivers[] = {"VRT", nullptr};
+  return std::unique_ptr<GDALDataset>(
+      GDALDataset::Open(description.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
 }
 
 std::string structure(GDALMajorObject& object, const char* key) {
@@ -98,6 +212,52 @@ void require_own_folder(GDALDataset& dataset, const std::string& name) {
       continue;
     throw InputError(name + ": names a file that is no plain file of its own folder; put both into one");
   }
+}
+
+// The files that a list of sources names lie beside it, and none is a list itself: GDAL opens what they name.
+void require_plain_sources(const std::string& name) {
+  std::ifstream in(name, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  constexpr std::string_view kNamesAFile[] = {"<SourceFilename", "<SourceDataset", "<DatasetName",
+                                              "<Filename"};
+  for (const std::string_view element : kNamesAFile) {
+    for (std::size_t at = 0; (at = text.find(element, at)) != text.npos;) {
+      const std::size_t start = std::min(text.find('>', at), text.size() - 1) + 1;
+      const std::string source = text.substr(start, text.find('<', start) - start);
+      const bool relative = text.substr(at, start - at).find("relativeToVRT=\"1\"") != std::string::npos;
+      const std::filesystem::path file = std::filesystem::path(name).parent_path() / source;
+      std::string first(1, '<');
+      if (relative && source.find_first_of("/\\:&") == source.npos && std::filesystem::is_regular_file(file))
+        std::ifstream(file, std::ios::binary).read(first.data(), 1);
+      if (first == "<")
+        throw InputError(
+            name + ": names " + source.substr(0, 80) +
+            ", which is no picture of its own folder; put both into one, with relativeToVRT=\"1\"");
+      at = start;
+    }
+  }
+}
+
+// A header that stands beside raw numbers states as many as there are, or it is another file's.
+void require_own_header(GDALDataset& raster, const std::string& name) {
+  GDALRasterBand& band = *raster.GetRasterBand(1);
+  const std::string bits = structure(band, "NBITS");
+  const double row =
+      std::ceil((bits.empty() ? GDALGetDataTypeSizeBits(band.GetRasterDataType()) : std::stoi(bits)) *
+                static_cast<double>(raster.GetRasterXSize()) / 8.0);
+  const char* const offset = raster.GetMetadataItem("header_offset", "ENVI");
+  const char* const packed = raster.GetMetadataItem("file_compression", "ENVI");
+  const double stated =
+      (offset == nullptr ? 0.0 : CPLAtof(offset)) + row * raster.GetRasterYSize() * raster.GetRasterCount();
+  const auto bytes = static_cast<double>(std::filesystem::file_size(name));
+  constexpr double kMargin = 1.02;  // words in front of the pixels, or behind them
+  if ((packed != nullptr && std::string(packed) != "0") || (bytes >= stated && bytes <= kMargin * stated))
+    return;
+  throw InputError(
+      fmt::format("{}: is no picture or height map by its first bytes, and the header beside it states "
+                  "{:.0f} bytes of {:.0f}; "
+                  "give the file that the header is of",
+                  name, stated, bytes));
 }
 
 // The file of the same name and another ending that holds a raster: the label of pixels, or the pixels of a
@@ -201,15 +361,21 @@ RasterFile::~RasterFile() {
 int RasterFile::width() const { return dataset_->GetRasterXSize(); }
 int RasterFile::height() const { return dataset_->GetRasterYSize(); }
 
-RasterFile::RasterFile(const std::filesystem::path& file)
+RasterFile::RasterFile(const std::filesystem::path& file, const ImageWords& words)
     : name_(file.string()), bands_(std::make_unique<Bands>()) {
   require_plain_file(file);
   const TiffTags tags = read_tiff_tags(file);
   orientation_ = tags.orientation;
   bands_->premultiplied = tags.premultiplied;
   const QuietGdal quiet;
-  dataset_ = open_raster(name_);
+  if (words.raw_size)
+    dataset_ = open_raw(name_, *words.raw_size);
+  else if (dataset_ = open_grid_of_nan(name_); dataset_ == nullptr)
+    dataset_ = open_raster(name_);
   if (dataset_ == nullptr) {
+    const std::string ending = file.extension().string();
+    if (ending == ".r16" || ending == ".r32" || ending == ".raw")
+      fail("holds numbers alone; state its columns and rows, such as --raw-size 1025x1025");
     const std::string other = raster_beside(file);
     if (!other.empty()) fail("its first bytes are not those of a picture or height map; give " + other);
     if (is_label(name_))
@@ -220,13 +386,17 @@ RasterFile::RasterFile(const std::filesystem::path& file)
         "its first bytes are not those of a picture or height map that can be read, or it is damaged; save "
         "it as PNG or JPEG, a height map as a GeoTIFF of 32-bit floats");
   }
-  require_own_folder(*dataset_, name_);
+  const std::string driver = driver_name(*dataset_);
+  const bool in_memory = std::string(dataset_->GetDescription()).rfind("/vsimem/", 0) == 0;
+  if (!words.raw_size && !in_memory) require_own_folder(*dataset_, name_);
+  if (driver == "VRT" && !words.raw_size) require_plain_sources(name_);
+  if (driver == "ENVI" || driver == "EHdr") require_own_header(*dataset_, name_);
   if (const char* turned = dataset_->GetMetadataItem("EXIF_Orientation"))
     orientation_ = std::clamp(std::atoi(turned), 1, 8);
   animated_ = is_animated(name_);
-  if (animated_ && driver_name(*dataset_) == "WEBP") fail("an animated WebP; save one frame of it as PNG");
+  if (animated_ && driver == "WEBP") fail("an animated WebP; save one frame of it as PNG");
   find_bands();
-  find_scale();
+  find_scale(words.height_unit);
 }
 
 void RasterFile::find_bands() {
@@ -308,23 +478,38 @@ void RasterFile::read_fits(GDALRasterBand& first) {
   if (b.unit.empty() && unit != nullptr) b.unit = unit;
 }
 
-void RasterFile::find_scale() {
+// A picture from above is turned so that north is above and east to the right: in another order of its rows
+// or columns it is the ground's mirror image.
+void RasterFile::turn_to_north(const GroundSteps& steps) {
+  constexpr int kMirrored = 2, kTurned = 3, kFlipped = 4;  // of EXIF
+  if (orientation_ != 1 || (!steps.west && !steps.south)) return;
+  orientation_ = !steps.south ? kMirrored : steps.west ? kTurned : kFlipped;
+}
+
+void RasterFile::find_scale(const std::string& height_unit) {
   StatedScale scale;
   const std::optional<GroundSteps> steps = ground_steps(*dataset_);
   if (steps && steps->column.length() > 0.0 && steps->row.length() > 0.0) {
     scale.pixel_width = steps->column.length();
     scale.pixel_height = steps->row.length();
     scale.like_degrees = steps->like_degrees;
+    scale.perhaps_degrees = steps->perhaps_degrees;
     scale.unknown = steps->unknown;
+    turn_to_north(*steps);
     const double shear = steps->column.east * steps->row.east + steps->column.north * steps->row.north;
     scale.sheared = std::abs(shear) > 0.01 * scale.pixel_width * scale.pixel_height;
     scale.pixel_source = steps->source;
   }
   Bands& b = *bands_;
+  if (!height_unit.empty())
+    b.unit = height_unit;
+  else if (b.unit.empty())
+    b.unit = vertical_unit(*dataset_);
   const double metres = unit_metres(b.unit);
   const bool many_levels = b.as_stated ? b.values.front()->GetRasterDataType() != GDT_Byte || b.signed_bytes
                                        : full_scale(*b.values.front()) >= 65535.0;
-  const bool one = b.channels() == 1 && !b.white_is_zero;
+  const bool one = b.channels() == 1 && (!b.white_is_zero || !height_unit.empty());
+  if (!height_unit.empty() && !one) fail("has colours, and no heights; leave --height-unit out");
   if (one && (metres > 0.0 || (b.unit.empty() && scale.pixel_width > 0.0 && many_levels))) {
     scale.heights = true;
     if (!b.as_stated) b.factor = 1.0;
@@ -335,6 +520,9 @@ void RasterFile::find_scale() {
       if (b.unit.find_first_of(" (,") != std::string::npos) scale.height_source = "unit \"" + b.unit + "\"";
     } else {
       scale.height_source = "no unit is stated";
+      if (steps && !steps->plane_unit.empty())
+        scale.height_source +=
+            ", and the plane counts in " + steps->plane_unit + ": --height-unit says another";
     }
   }
   if (scale.heights) b.see_through = false;  // what is transparent has no height
@@ -357,6 +545,11 @@ std::vector<std::string> RasterFile::remarks() const {
                       "\" is no length, and its values are taken as brightness");
   }
   return remarks;
+}
+
+bool RasterFile::names_gaps() const {
+  const Bands& b = *bands_;
+  return b.blank || (b.masked && (b.values.front()->GetMaskFlags() & (GMF_NODATA | GMF_PER_DATASET)) != 0);
 }
 
 namespace {

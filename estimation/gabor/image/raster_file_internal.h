@@ -28,9 +28,11 @@ struct GroundStep {
 };
 struct GroundSteps {
   GroundStep column, row;
-  std::string source;         // StatedScale::pixel_source
-  bool like_degrees = false;  // as StatedScale
-  bool unknown = false;       // as StatedScale
+  std::string source;                                  // StatedScale::pixel_source
+  bool like_degrees = false, perhaps_degrees = false;  // as StatedScale
+  bool unknown = false;                                // as StatedScale
+  bool west = false, south = false;  // columns run to the west; rows run to the north, from the south
+  std::string plane_unit;            // of the frame's plane, where it is not metres
 };
 
 // By the raster's transform and its spatial reference: a grid in degrees by the radius of its body, a
@@ -48,9 +50,8 @@ struct TiffTags {
 // TIFF that is damaged, and for a camera's raw file, whose first picture is a thumbnail.
 TiffTags read_tiff_tags(const std::filesystem::path& file);
 
-// The metres of a unit of length by its name, in any case; 0 for another unit. Words behind it that say from
-// where heights count are passed over: "metres above the ellipsoid", "m (MSL)".
-double unit_metres(std::string unit);
+// The unit of the heights of a compound frame, as unit_metres() takes it; empty where the frame states none.
+std::string vertical_unit(GDALDataset& raster);
 
 // What the label of a PDS3 image states for a keyword, without quotes; empty where it does not. GDAL keeps
 // some keywords to itself.
@@ -63,14 +64,15 @@ class RasterFile {
  public:
   // Opens the file and decodes no pixel. Throws InputError for files of another kind and for damaged ones,
   // for complex pixels, and for bands that are neither one height map or picture nor red, green and blue.
-  explicit RasterFile(const std::filesystem::path& file);
+  explicit RasterFile(const std::filesystem::path& file, const ImageWords& words = {});
   ~RasterFile();
   RasterFile(const RasterFile&) = delete;
   RasterFile& operator=(const RasterFile&) = delete;
 
   int width() const;  // as stored, before the picture is turned upright
   int height() const;
-  int orientation() const { return orientation_; }  // of EXIF, 1 .. 8
+  // Of EXIF, 1 .. 8, or as it stands on the ground: north above and east to the right.
+  int orientation() const { return orientation_; }
   const std::optional<StatedScale>& scale() const { return scale_; }
   // What was not used of the file. The share of transparent pixels is known after read().
   std::vector<std::string> remarks() const;
@@ -82,6 +84,9 @@ class RasterFile {
   // WorkError where progress asks to stop.
   void read(const TakeRow& take, const Progress& progress = {});
 
+  // Whether the file says which pixels have no value, so that nobody need guess.
+  bool names_gaps() const;
+
   // What read() makes of a stored number of one band, and the stored number of such a value.
   double to_value(double stored) const;
   double to_stored(double value) const;
@@ -92,7 +97,8 @@ class RasterFile {
   void require_known_floats() const;
   void read_label(GDALRasterBand& first);
   void read_fits(GDALRasterBand& first);
-  void find_scale();
+  void find_scale(const std::string& height_unit);
+  void turn_to_north(const GroundSteps& steps);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::string name_;

@@ -254,6 +254,36 @@ TEST_F(FitGabor, AGlobeWithoutAFrameMayBeInDegrees) {
   succeed("globe.asc -o rock.json --mm-per-px 1e6");
 }
 
+TEST_F(FitGabor, SmallPixelsOfSteepGroundMayBeInDegrees) {
+  std::string grid = "ncols 40\nnrows 40\nxllcorner 11.2\nyllcorner 46.1\ncellsize 0.0002777778\n";
+  std::string flat = grid;
+  for (int k = 0; k < 40 * 40; ++k) {
+    const float height = unit_float(hash_cell(5u, k, 0, 0));
+    grid += std::to_string(300.0F + height) + (k % 40 == 39 ? "\n" : " ");
+    flat += std::to_string(2e-3F * height) + (k % 40 == 39 ? "\n" : " ");
+  }
+  write("dem.asc", grid);
+  write("scan.asc", flat);
+  refuse("dem.asc -o rock.json", "may be degrees");
+  succeed("dem.asc -o rock.json --mm-per-px 30000");
+  EXPECT_TRUE(has(succeed("scan.asc -o rock.json"), "pixels of 0.0002777778 m"));
+}
+
+TEST_F(FitGabor, PixelsBecomeSquare) {
+  write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "dem.tif");
+  EXPECT_TRUE(has(succeed("dem.tif -o rock.json --mm-per-px 2000 --mm-per-px-y 3000"),
+                  "pixels of 2 x 3 m become square ones of 3 m, 42 x 64 of them"));
+  EXPECT_DOUBLE_EQ(std::get<GaborLayer>(recipe().layers[0]).pixel_size, 3.0);
+  refuse("dem.tif -o rock.json --mm-per-px-y 3000", "--mm-per-px");
+}
+
+TEST_F(FitGabor, HeightsHaveTheUnitThatIsGiven) {
+  write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "dem.tif");
+  EXPECT_TRUE(has(succeed("dem.tif -o rock.json --height-unit dm"), "heights in metres of rms 0.3"));
+  refuse("dem.tif -o rock.json --height-unit parsec", "is no unit of length");
+  refuse("dem.tif -o rock.json --raw-size 9", "--raw-size");
+}
+
 TEST_F(FitGabor, MissingGroundIsLeftOut) {
   write_geotiff(heights(0), 64, 64, 2.0, "", folder_ / "whole.tif");
   write_geotiff(heights(7), 64, 64, 2.0, "", folder_ / "dem.tif");

@@ -5,6 +5,7 @@
 
 #include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/image/missing_ground.h"
+#include "estimation/gabor/image/square_pixels.h"
 #include "numerics/errors.h"
 #include "synthesis/picture/image_file.h"
 #include "tests/estimation/gabor/image/raster_inputs.h"
@@ -545,6 +546,166 @@ TEST_F(RasterFileTest, WhatNoReaderShouldGuessIsRefused) {
   EXPECT_TRUE(has(error_message(folder.write(
                       "list.vrt", "<VRTDataset rasterXSize=\"9\" rasterYSize=\"9\"></VRTDataset>")),
                   "first bytes"));
+}
+
+TEST_F(RasterFileTest, AHeaderSpeaksForItsOwnFileAlone) {
+  const std::string envi =
+      "ENVI\nsamples = 2\nlines = 2\nbands = 1\nheader offset = 0\nfile type = ENVI Standard\n"
+      "data type = 1\ninterleave = bsq\nbyte order = 0\n";
+  const std::string ehdr = "NROWS 2\nNCOLS 2\nNBANDS 1\nNBITS 8\nBYTEORDER I\nLAYOUT BIL\n";
+  for (const std::string& header : {envi, ehdr}) {
+    const fs::path png = write_raster(folder / "site.png", {"PNG", GDT_Byte}, {0, 51, 102, 153, 204, 255});
+    folder.write("site.hdr", header);
+    expect_values(read_image(png, false).planes[0], {0.0, 0.2, 0.4, 0.6, 0.8, 1.0});
+    EXPECT_TRUE(has(error_message(folder.write("site.dat", "123456")), "states 4 bytes of 6"));
+    EXPECT_EQ(read_image(folder.write("site.dat", "1234"), false).planes[0].values.size(), 4u);
+    fs::remove(folder / "site.png");
+    fs::remove(folder / "site.dat");
+  }
+}
+
+TEST_F(RasterFileTest, WhatStandsInASidecarCounts) {
+  const fs::path file = write_raster(folder / "a.tif", {"GTiff", GDT_Int16}, {-100, 10, 20, 30, 20, 10},
+                                     [](GDALDataset& raster) { place(raster, 2.0); });
+  folder.write("a.tif.aux.xml",
+               "<PAMDataset><PAMRasterBand band=\"1\"><NoDataValue>-100</NoDataValue><UnitType>dm</UnitType>"
+               "<Offset>5</Offset><Scale>2</Scale></PAMRasterBand></PAMDataset>");
+  const ImageFile map = read_image(file, false);
+  EXPECT_EQ(map.planes[0].missing, (std::vector<bool>{true, false, false, false, false, false}));
+  EXPECT_NEAR(map.planes[0].values[3] - map.planes[0].values[1], 4.0, 1e-9);
+}
+
+TEST_F(RasterFileTest, AFloorIsGroundWhereTheFileNamesItsGaps) {
+  for (const double floor : {0.0, 9999.0, -9999.0}) {
+    const ImageFile map =
+        read({"GTiff", GDT_Float32}, {floor, 310, 311, 312, 311, floor}, [](GDALDataset& raster) {
+          place(raster, 2.0);
+          raster.GetRasterBand(1)->SetNoDataValue(-32768.0);
+        });
+    EXPECT_EQ(missing_share(map.planes[0]), 0.0) << floor;
+    ASSERT_EQ(map.remarks.size(), 1u);
+    EXPECT_TRUE(has(map.remarks[0], "counts, since the file names other gaps")) << map.remarks[0];
+  }
+}
+
+TEST(HeightUnit, HasManySpellings) {
+  const double survey = 1200.0 / 3937.0;
+  for (const char* name :
+       {"US survey foot", "US_survey_foot", "U.S. survey feet", "usft", "ftUS", "Foot_US", "us-ft",
+        "survey feet", "US survey feet (NAVD88)", "US survey feet above sea level"})
+    EXPECT_DOUBLE_EQ(unit_metres(name), survey) << name;
+  for (const char* name : {"ft", "Feet", "foot", "international foot", "feet above the ellipsoid"})
+    EXPECT_DOUBLE_EQ(unit_metres(name), 0.3048) << name;
+  EXPECT_DOUBLE_EQ(unit_metres("dm"), 0.1);
+  EXPECT_DOUBLE_EQ(unit_metres("Decimetres"), 0.1);
+  EXPECT_DOUBLE_EQ(unit_metres("inches"), 0.0254);
+  EXPECT_DOUBLE_EQ(unit_metres("[m]"), 1.0);
+  EXPECT_DOUBLE_EQ(unit_metres("m (MSL)"), 1.0);
+  EXPECT_DOUBLE_EQ(unit_metres("KILOMETER"), 1000.0);
+  for (const char* name : {"m s-1", "m/s", "us", "parsec", "metres per pixel", "foo above m", ""})
+    EXPECT_EQ(unit_metres(name), 0.0) << name;
+}
+
+TEST_F(RasterFileTest, TheCallerMayStateTheUnit) {
+  const fs::path file = write_raster(folder / "h.tif", {"GTiff", GDT_UInt16}, {0, 10, 20, 30, 40, 50});
+  const ImageFile map = read_image(file, false, {}, {"ft", {}});
+  EXPECT_TRUE(map.scale->heights);
+  EXPECT_NEAR(map.planes[0].values[5] - map.planes[0].values[0], 50 * 0.3048, 1e-9);
+}
+
+TEST_F(RasterFileTest, APlaneInFeetIsSaidOfHeightsWithoutAUnit) {
+  const ImageFile map = read({"GTiff", GDT_Float32}, kSteps, [](GDALDataset& raster) {
+    place(raster, 10.0, "+proj=eqc +R=1737400 +units=us-ft");
+  });
+  EXPECT_NEAR(map.scale->pixel_width, 12000.0 / 3937.0, 1e-9);
+  EXPECT_TRUE(has(map.scale->height_source, "--height-unit says another")) << map.scale->height_source;
+}
+
+// Rows from the south, and columns from the east, are turned; the values are those of the ground.
+TEST_F(RasterFileTest, NorthIsAboveAndEastToTheRight) {
+  const auto values = [&](double x, double y) {
+    return read({"GTiff", GDT_Float32}, {0, 1, 2, 3, 4, 10},
+                [&](GDALDataset& raster) {
+                  std::array<double, 6> transform{100.0, x, 0.0, 200.0, 0.0, y};
+                  raster.SetGeoTransform(transform.data());
+                })
+        .planes[0]
+        .values;
+  };
+  const auto steps = [](const std::vector<double>& v) {
+    return std::vector<double>{v[1] - v[0], v[2] - v[0], v[3] - v[0], v[4] - v[0], v[5] - v[0]};
+  };
+  EXPECT_EQ(steps(values(2, -2)), (std::vector<double>{1, 2, 3, 4, 10}));
+  EXPECT_EQ(steps(values(2, 2)), (std::vector<double>{1, 7, -3, -2, -1}));
+  EXPECT_EQ(steps(values(-2, -2)), (std::vector<double>{-1, -2, 8, 2, 1}));
+  EXPECT_EQ(steps(values(-2, 2)), (std::vector<double>{-6, -7, -8, -9, -10}));
+}
+
+TEST_F(RasterFileTest, ArcGridsMayBeginWithNan) {
+  const auto grid = [&](const std::string& rows) {
+    return read_image(
+               folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 2\n" + rows),
+               false)
+        .planes[0];
+  };
+  const GreyImage image = grid("nan 1.5 2\n3 4 5\n");
+  EXPECT_EQ(image.missing, (std::vector<bool>{true, false, false, false, false, false}));
+  EXPECT_NEAR(image.values[5] - image.values[1], 3.5, 1e-6);
+  EXPECT_NEAR(missing_share(grid("NaN 1 2\n3 NaN 5\n")), 1.0 / 3.0, 1e-12);
+}
+
+TEST_F(RasterFileTest, ListsOfTilesNameFilesOfTheirOwnFolder) {
+  write_raster(folder / "l.tif", {}, kSteps);
+  fs::create_directory(folder / "other");
+  write_raster(folder / "other" / "l.tif", {}, kSteps);
+  const auto list = [&](const std::string& source, const std::string& relative = "1") {
+    return folder.write(
+        "a.vrt",
+        "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" "
+        "band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"" +
+            relative + "\">" + source +
+            "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  };
+  expect_values(read_image(list("l.tif"), false).planes[0], kSteps);
+  EXPECT_TRUE(has(error_message(list("other/l.tif")), "own folder"));
+  EXPECT_TRUE(has(error_message(list((folder / "l.tif").string(), "0")), "own folder"));
+  EXPECT_TRUE(has(error_message(list("/vsicurl/http://localhost/l.tif")), "own folder"));
+  folder.write("inner.vrt", "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"></VRTDataset>");
+  EXPECT_TRUE(has(error_message(list("inner.vrt")), "own folder"));
+}
+
+TEST_F(RasterFileTest, NumbersAloneNeedTheirSize) {
+  const fs::path file = folder.write("a.r16", std::string("\0\0\1\0\0\1\1\1\2\1\3\1", 12));
+  EXPECT_TRUE(has(error_message(file), "--raw-size"));
+  const ImageFile map = read_image(file, false, {}, {"m", ImageSize{3, 2}});
+  EXPECT_NEAR(map.planes[0].values[5] - map.planes[0].values[0], 259.0, 1e-9);
+  EXPECT_TRUE(has(testing::refusal_text([&] {
+                    read_image(file, false, {}, {"m", ImageSize{2, 2}});
+                  }),
+                  "has 12 bytes, and 2 x 2 pixels would take 8"));
+}
+
+// Waves of 12 m along x and along y, in pixels of 2 by 3 m.
+TEST(SquarePixels, KeepWavesAndGaps) {
+  GreyImage image{90, 60, {}, std::vector<bool>(5400, false)};
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 90; ++x)
+      image.values.push_back(std::sin((2 * x + 1) * std::acos(-1.0) / 6) +
+                             std::sin((3 * y + 1.5) * std::acos(-1.0) / 6));
+  }
+  image.missing[0] = image.missing[1] = true;
+  const GreyImage square = with_square_pixels(image, 2.0, 3.0);
+  ASSERT_EQ(square.width, 60);
+  ASSERT_EQ(square.height, 60);
+  for (int y = 5; y < 55; ++y) {
+    for (int x = 5; x < 55; ++x)
+      EXPECT_NEAR(
+          square.at(x, y),
+          std::sin((3 * x + 1.5) * std::acos(-1.0) / 6) + std::sin((3 * y + 1.5) * std::acos(-1.0) / 6),
+          0.06);
+  }
+  EXPECT_TRUE(square.missing[0] && !square.missing[2]);
+  EXPECT_EQ(with_square_pixels(with_square_pixels(image, 3.0, 2.0), 1.0, 1.0).width, 90);
 }
 
 // The first picture of a raw file is a thumbnail, and the true one is another.
