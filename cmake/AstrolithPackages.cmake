@@ -3,7 +3,10 @@ find_package(TBB REQUIRED)                 # threads
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # dense linear algebra
 find_package(nlohmann_json 3.11 REQUIRED)  # recipes and summaries
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256
-find_package(embree 3 REQUIRED)            # rays for previews, closest points on surfaces
+find_package(embree 4 QUIET)               # rays for previews, closest points on surfaces
+if(NOT embree_FOUND)
+  find_package(embree 3 REQUIRED)
+endif()
 find_package(OpenMesh REQUIRED)            # half-edges for curvature, decimation
 find_package(nanoflann REQUIRED)            # nearest points of a cloud
 find_package(TIFF REQUIRED)
