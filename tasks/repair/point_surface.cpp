@@ -319,13 +319,14 @@ PointSurface surface_through(const TriangleMesh& points, const std::string& name
     throw InputError(name + ": holds " + std::to_string(cloud.points.size()) +
                      " points; a surface needs at least 16");
   Scatter scatter = find_scatter(cloud, result);
-  if (cloud.points.size() > kMostPoints) {
+  const std::vector<Vec3d> whole = cloud.points;
+  if (whole.size() > kMostPoints) {
     const double growth =
         std::sqrt(static_cast<double>(cloud.points.size()) / static_cast<double>(kMostPoints));
     cloud = joined_in_cubes(cloud, 1.2 * growth * scatter.spacing);
     scatter = find_scatter(cloud, result);
   }
-  result.points = static_cast<std::int64_t>(cloud.points.size());
+  result.points = static_cast<std::int64_t>(whole.size());
   tell_points(progress, 0.2);
   const int neighbours = smoothing_neighbours(scatter, cloud.points.size());
   const std::vector<Vec3d> smooth = neighbours > 0 ? jet_smoothed(cloud.points, neighbours) : cloud.points;
@@ -340,9 +341,9 @@ PointSurface surface_through(const TriangleMesh& points, const std::string& name
     for (Triangle& t : result.mesh.triangles) std::swap(t[1], t[2]);
   }
   tell_points(progress, 0.8);
-  settle(result.mesh, cloud.points);
+  settle(result.mesh, whole);
   tell_points(progress, 0.9);
-  judge(result, cloud.points, normals, scatter);
+  judge(result, whole, normals, scatter);
   return result;
 }
 

@@ -15,7 +15,7 @@ inline constexpr double kMostUnseen = 1.0 / 3.0;
 // Lengths are those of the points.
 struct PointSurface {
   TriangleMesh mesh;             // closed, wound outwards
-  std::int64_t points = 0;       // that the surface rests on, those at one place or in one cell counted once
+  std::int64_t points = 0;       // that the surface rests on, those at one place counted once
   std::int64_t strays = 0;       // points far from all others, or far from a surface through their neighbours
   Vec3d stray;                   // the one of them that is farthest out
   double noise = 0.0;            // root mean square of the distances from the points to the surface
