@@ -161,6 +161,23 @@ def test_usd_is_valid_and_has_levels_as_variants(rock, tmp_path):
     assert not context.Validate(stage)
 
 
+def test_usd_has_the_colours_of_vertices(tmp_path):
+    usd = pytest.importorskip("pxr.Usd")
+    from pxr import UsdGeom
+
+    recipe = {**RECIPE, "albedo": {"normal": 0.05, "color": [1.1, 1.0, 0.9]}}
+    (tmp_path / "r.json").write_text(json.dumps(recipe))
+    astrolith.synth(tmp_path / "r.json", output=tmp_path / "r.glb", resolution=24)
+    stage = usd.Stage.Open(bridges.write_usd(tmp_path / "r.glb", tmp_path / "r.usda")[0])
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/body/mesh"))
+    colors = np.array(mesh.GetDisplayColorPrimvar().Get())
+    assert colors.shape == np.array(mesh.GetPointsAttr().Get()).shape
+    light = 0.36 * (0.05 / 0.1) ** (1 / 3)  # for viewing (docs/recipe.md)
+    assert np.median(colors, axis=0) == pytest.approx([1.1 * light, light, 0.9 * light], rel=0.02)
+    shader = stage.GetPrimAtPath("/body/regolith/vertices")
+    assert shader.GetAttribute("inputs:varname").Get() == "displayColor"
+
+
 def test_usd_is_a_rigid_body(rock, tmp_path):
     usd = pytest.importorskip("pxr.Usd")
     pytest.importorskip("scipy")

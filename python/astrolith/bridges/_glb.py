@@ -28,6 +28,7 @@ class Level:
     normals: Optional[npt.NDArray[np.float32]]
     uv: Optional[npt.NDArray[np.float32]]  # from the image's top left corner
     images: dict[str, bytes]  # PNG, by their use in the material: "normal", "occlusion", "color"
+    colors: Optional[npt.NDArray[np.float32]] = None  # linear light of the vertices
 
 
 def is_collision(name: str) -> bool:
@@ -63,6 +64,10 @@ class _File:
         values = np.frombuffer(self.view(accessor["bufferView"]), _TYPES[accessor["componentType"]])
         width = _WIDTHS[accessor["type"]]
         return values.reshape(-1, width) if width > 1 else values
+
+    def colors(self, number: Optional[int]) -> Optional[npt.NDArray[np.float32]]:
+        values = self.array(number)
+        return None if values is None else (values[:, :3] / np.iinfo(values.dtype).max).astype(np.float32)
 
     def images(self, material: dict[str, Any]) -> dict[str, bytes]:
         textures = {
@@ -108,6 +113,7 @@ def read_levels(file: PathLike) -> list[Level]:
                     glb.array(attributes.get("NORMAL")),
                     glb.array(attributes.get("TEXCOORD_0")),
                     glb.images(glb.document["materials"][primitive["material"]]),
+                    glb.colors(attributes.get("COLOR_0")),
                 )
             )
     except (KeyError, IndexError, TypeError, ValueError):

@@ -33,8 +33,8 @@ def _texture(pxr: Any, stage: Any, path: str, file: str, reader: Any, raw: bool)
     return shader
 
 
-def _material(pxr: Any, stage: Any, path: str, files: dict[str, str]) -> Any:
-    """A rough material without shine, with the maps of a level: UsdPreviewSurface."""
+def _material(pxr: Any, stage: Any, path: str, files: dict[str, str], has_colors: bool) -> Any:
+    """A rough material without shine, with the maps of a level or the colours of its vertices: UsdPreviewSurface."""
     sdf, shade = pxr.Sdf, pxr.UsdShade
     material = shade.Material.Define(stage, path)
     surface = shade.Shader.Define(stage, path + "/surface")
@@ -44,6 +44,12 @@ def _material(pxr: Any, stage: Any, path: str, files: dict[str, str]) -> Any:
     material.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
     color = surface.CreateInput("diffuseColor", sdf.ValueTypeNames.Color3f)
     color.Set((_UNCOLORED, _UNCOLORED, _UNCOLORED))
+    if has_colors and "color" not in files:
+        reader = shade.Shader.Define(stage, path + "/vertices")
+        reader.CreateIdAttr("UsdPrimvarReader_float3")
+        reader.CreateInput("varname", sdf.ValueTypeNames.String).Set("displayColor")
+        reader.CreateOutput("result", sdf.ValueTypeNames.Float3)
+        color.ConnectToSource(reader.ConnectableAPI(), "result")
     if not files:
         return material
     reader = shade.Shader.Define(stage, path + "/st")
@@ -87,6 +93,9 @@ def _mesh(pxr: Any, stage: Any, path: str, level: Level) -> Any:
             "st", pxr.Sdf.ValueTypeNames.TexCoord2fArray, geom.Tokens.vertex
         )
         primvar.Set(vt.Vec2fArray.FromNumpy(np.ascontiguousarray(st)))
+    if level.colors is not None:
+        shown = mesh.CreateDisplayColorPrimvar(geom.Tokens.vertex)
+        shown.Set(vt.Vec3fArray.FromNumpy(np.ascontiguousarray(level.colors)))
     return mesh
 
 
@@ -125,7 +134,7 @@ def write_usd(
 
     Lengths are metres and +z is up, as in the body's frame. Each level of detail is a variant of the set ``lod``, of which
     the finest is chosen. The material is a ``UsdPreviewSurface`` without shine; maps are .png files beside the scene.
-    Colours of vertices stay behind: bake them. A body with an origin is relative to it, as in the .glb.
+    Without a map of colours those of the vertices are ``displayColor``, in linear light. A body with an origin is relative to it, as in the .glb.
 
     Parameters
     ----------
@@ -184,7 +193,7 @@ def write_usd(
             files[use] = "./" + os.path.basename(image)
         with variants.GetVariantEditContext():
             mesh = _mesh(pxr, stage, "/body/mesh", level)
-            material = _material(pxr, stage, "/body/regolith", files)
+            material = _material(pxr, stage, "/body/regolith", files, level.colors is not None)
             pxr.UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
     variants.SetVariantSelection("lod0")
     if density is not None:
