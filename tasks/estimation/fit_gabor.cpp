@@ -109,6 +109,7 @@ void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
          "--height-unit", o.height_unit,
          "the values of the file are heights in this unit, such as ft, dm or US survey foot, whatever the "
          "file says")
+      .placeholder("UNIT")
       .default_text("");
   app.add_option(
          "--raw-size", o.raw_size,
