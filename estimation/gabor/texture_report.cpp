@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "synthesis/picture/figure.h"
 #include "numerics/files/output_file.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/picture/colormap.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/image_file.h"
 
 namespace astrolith {

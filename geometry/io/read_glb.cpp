@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-using Json = nlohmann::json;
+using GltfJson = nlohmann::json;
 
 constexpr const char* kRemedy = "export it as .glb of triangles, uncompressed and with all data in the file";
 
@@ -38,25 +38,25 @@ double snapped(double value) {
 }
 
 // A whole number of the document, which is not negative; `otherwise` where the member is absent.
-std::uint64_t whole(const Json& number) {
+std::uint64_t whole(const GltfJson& number) {
   if (!number.is_number_unsigned())
-    throw Json::other_error::create(501, "a number that is not whole", &number);
+    throw GltfJson::other_error::create(501, "a number that is not whole", &number);
   return number.get<std::uint64_t>();
 }
-std::uint64_t whole(const Json& object, const char* name, std::uint64_t otherwise) {
+std::uint64_t whole(const GltfJson& object, const char* name, std::uint64_t otherwise) {
   return object.contains(name) ? whole(object.at(name)) : otherwise;
 }
 
 template <std::size_t kCount>
-std::array<double, kCount> numbers_of(const Json& node, const char* name,
+std::array<double, kCount> numbers_of(const GltfJson& node, const char* name,
                                       const std::array<double, kCount>& otherwise) {
   if (!node.contains(name)) return otherwise;
   const auto values = node.at(name).get<std::vector<double>>();
-  if (values.size() != kCount) throw Json::other_error::create(501, "another count of numbers", &node);
+  if (values.size() != kCount) throw GltfJson::other_error::create(501, "another count of numbers", &node);
   return node.at(name).get<std::array<double, kCount>>();
 }
 
-Placement placement_of(const Json& node) {
+Placement placement_of(const GltfJson& node) {
   if (node.contains("matrix")) {
     const auto m = numbers_of<16>(node, "matrix", {});
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
@@ -96,24 +96,25 @@ class GlbReader {
 
   TriangleMesh read() {
     try {
-      document_ = Json::parse(json_);
-      for (const Json& required : document_.value("extensionsRequired", Json::array())) {
+      document_ = GltfJson::parse(json_);
+      for (const GltfJson& required : document_.value("extensionsRequired", GltfJson::array())) {
         const auto name = required.get<std::string>();
         const auto is_about = [&](const char* word) { return name.find(word) != name.npos; };
         if (!is_about("texture") && !is_about("materials") && !is_about("lights"))
           file_.fail("", "needs the extension " + astrolith::quoted(name), kRemedy);
       }
-      const Json& scene = document_.at("scenes").at(whole(document_, "scene", 0));
+      const GltfJson& scene = document_.at("scenes").at(whole(document_, "scene", 0));
       visited_.resize(document_.at("nodes").size());
       const Placement pole_up{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};  // (x, y, z) -> (x, -z, y)
-      for (const Json& node : scene.at("nodes")) add_node(whole(node), pole_up);
+      for (const GltfJson& node : scene.at("nodes")) add_node(whole(node), pole_up);
       // Of our own files: readers add the origin of a whole body, not that of a patch.
-      const Json extras = document_.value("asset", Json::object()).value("extras", Json::object());
+      const GltfJson extras =
+          document_.value("asset", GltfJson::object()).value("extras", GltfJson::object());
       if (extras.is_object() && extras.value("whole_body", false)) {
         const auto origin = numbers_of<3>(extras, "origin", {0, 0, 0});
         for (Vec3d& p : mesh_.vertices) p += Vec3d{origin[0], origin[1], origin[2]};
       }
-    } catch (const Json::exception& e) {
+    } catch (const GltfJson::exception& e) {
       file_.fail("its JSON", "is no glTF: " + astrolith::quoted(e.what()), kRemedy);
     }
     return weld_vertices(std::move(mesh_), 0.0);  // vertices are split where a texture or a normal has a seam
@@ -131,20 +132,20 @@ class GlbReader {
     while (!waiting.empty()) {
       const auto [number, around] = waiting.back();
       waiting.pop_back();
-      const Json& node = document_.at("nodes").at(number);
+      const GltfJson& node = document_.at("nodes").at(number);
       if (visited_.at(number)) file_.fail("node " + std::to_string(number), "hangs in two places", kRemedy);
       visited_[number] = true;
       const Placement place = around(placement_of(node));
       if (node.contains("mesh") && !only_collides(node.value("name", std::string()))) {
-        for (const Json& primitive : document_.at("meshes").at(whole(node["mesh"])).at("primitives"))
+        for (const GltfJson& primitive : document_.at("meshes").at(whole(node["mesh"])).at("primitives"))
           add_primitive(primitive, place);
       }
-      for (const Json& child : node.value("children", Json::array()))
+      for (const GltfJson& child : node.value("children", GltfJson::array()))
         waiting.emplace_back(whole(child), place);
     }
   }
 
-  void add_primitive(const Json& primitive, const Placement& place) {
+  void add_primitive(const GltfJson& primitive, const Placement& place) {
     constexpr std::uint64_t kTriangles = 4;
     if (whole(primitive, "mode", kTriangles) != kTriangles)
       file_.fail("a mesh", "holds points, lines or strips", kRemedy);
@@ -191,8 +192,8 @@ class GlbReader {
   };
 
   // The values of an accessor, of this component and width in bytes; 0: indices.
-  Rows rows(const Json& number, std::uint64_t component, std::size_t width) const {
-    const Json& accessor = document_.at("accessors").at(whole(number));
+  Rows rows(const GltfJson& number, std::uint64_t component, std::size_t width) const {
+    const GltfJson& accessor = document_.at("accessors").at(whole(number));
     const std::uint64_t stored = whole(accessor.at("componentType"));
     if (width == 0) width = stored == 5121 ? 1 : stored == 5123 ? 2 : stored == 5125 ? 4 : 0;
     const char* const type = component != 0 ? "VEC3" : "SCALAR";
@@ -200,7 +201,7 @@ class GlbReader {
         accessor.contains("sparse") || !accessor.contains("bufferView"))
       file_.fail("accessor " + number.dump(), "stores positions or indices in a way that is not read",
                  kRemedy);
-    const Json& view = document_.at("bufferViews").at(whole(accessor["bufferView"]));
+    const GltfJson& view = document_.at("bufferViews").at(whole(accessor["bufferView"]));
     if (view.at("buffer") != 0 || document_.at("buffers").at(0).contains("uri"))
       file_.fail("", "keeps its data in another file", kRemedy);
     const std::uint64_t count = whole(accessor.at("count")), offset = whole(accessor, "byteOffset", 0),
@@ -216,7 +217,7 @@ class GlbReader {
 
   const MeshFile& file_;
   std::string_view json_, binary_;
-  Json document_;
+  GltfJson document_;
   std::vector<bool> visited_;
   TriangleMesh mesh_;
 };

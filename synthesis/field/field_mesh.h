@@ -19,8 +19,9 @@ extern template EvenStatistics even_mesh(const PatchField&, double, RecordedMesh
 extern template ProbeFigures probe_surface<kBlockCells>(const ImplicitField&, const ProbedMesh&, int);
 extern template ProbeFigures probe_surface<kBlockCells>(const PatchField&, const ProbedMesh&, int);
 
-// Meshes what a cube holds of a patch's surface. Its grid lies anywhere in the patch, and has a layer of cells
-// below each lower side of the cube, as make_patch_grid() makes it. The mesh is open where the cube cuts it.
+// Meshes what a cube holds of a patch's surface. Its grid lies anywhere in the patch, and has a layer of
+// cells below each lower side of the cube, as make_patch_grid() makes it. The mesh is open where the cube
+// cuts it.
 MeshStatistics mesh_part(const PatchField& field, const SampleGrid& grid, MeshSink& sink);
 
 // A coarse mesh of a field, as a place for probes: whole, and of a patch. `made`, if given, gets its counts.

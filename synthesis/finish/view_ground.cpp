@@ -47,10 +47,10 @@ struct CubeLattice {
   double side(int level) const { return kCells * cell(level); }
   Box box(const GroundCube& cube, std::int64_t cubes = 1) const {
     const double s = side(cube.level);
-    const auto [x, y, z] = cube.at;
     const auto place = [&](std::int64_t more) {
-      return corner + s * Vec3d{static_cast<double>(x + more), static_cast<double>(y + more),
-                                static_cast<double>(z + more)};
+      return corner + s * Vec3d{static_cast<double>(cube.at[0] + more),
+                                static_cast<double>(cube.at[1] + more),
+                                static_cast<double>(cube.at[2] + more)};
     };
     return {place(0), place(cubes)};
   }
@@ -261,8 +261,9 @@ class Cubes {
     std::map<GroundCube, std::vector<GroundCube>> blocks;
     for (const GroundCube& cube : cubes)
       if (!tiles_.contains(cube)) blocks[block_begin(cube)].push_back(cube);
-    for (const auto& [block, missing] : blocks) {
-      const LevelField& field = field_for(block, progress);
+    for (const auto& entry : blocks) {
+      const std::vector<GroundCube>& missing = entry.second;
+      const LevelField& field = field_for(entry.first, progress);
       std::vector<std::shared_ptr<const Tile>> made(missing.size());
       parallel_for(0, static_cast<std::int64_t>(missing.size()), [&](std::int64_t i) {
         const GroundCube& cube = missing[static_cast<std::size_t>(i)];

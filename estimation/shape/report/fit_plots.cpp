@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "synthesis/picture/figure.h"
 #include "synthesis/picture/colormap.h"
+#include "synthesis/picture/figure.h"
 
 namespace astrolith {
 namespace {

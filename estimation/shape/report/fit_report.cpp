@@ -11,7 +11,6 @@
 
 #include "descriptor/surface/surface_statistics.h"
 #include "estimation/page/report_page.h"
-#include "synthesis/picture/figure.h"
 #include "estimation/shape/report/fit_plots.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
@@ -21,6 +20,7 @@
 #include "numerics/portable_double.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/picture/colormap.h"
+#include "synthesis/picture/figure.h"
 #include "synthesis/picture/preview.h"
 
 namespace astrolith {
