@@ -55,12 +55,15 @@ class DasFile {
     const auto records = static_cast<std::int64_t>(file_.bytes.size() / kRecord);
     std::int64_t left = records;  // directories that point in a circle end
     while (directory > 0 && left-- > 0) {
+      if (doubles_.size() + integers_.size() > static_cast<std::size_t>(records))
+        file_.fail("", "its directories point in a circle", kFetch);
       if (directory >= records) file_.fail("", "a directory lies beyond the file", kFetch);
       ByteReader words = at_byte(static_cast<std::size_t>(directory) * kRecord);
       words.skip(sizeof(std::int32_t), "a directory");
       const std::int64_t next = words.read<std::int32_t>("a directory");
       words.skip(6 * sizeof(std::int32_t), "a directory");
       int kind = words.read<std::int32_t>("a directory");
+      if (kind < 1 || kind > 3) file_.fail("a directory", "names a kind of numbers that is none", kFetch);
       std::int64_t record = directory + 1;
       for (int k = kFirstKind + 1; k < kWords; ++k) {
         const std::int64_t length = words.read<std::int32_t>("a directory");
@@ -109,6 +112,8 @@ void add_plates(const MeshFile& file, const DasFile& das, const Segment& segment
   if (vertices < 3 || plates < 1 || vertices > most || plates > most)
     file.fail("a segment", "its counts of vertices and plates cannot be right", kFetch);
   const auto base = static_cast<std::int64_t>(mesh.vertices.size());
+  if (static_cast<std::int64_t>(mesh.triangles.size()) + plates > most || base + vertices > most)
+    file.fail("", "its segments lie over each other", kFetch);
   for (std::int64_t v = 0; v < vertices; ++v) {
     const std::int64_t at = segment.doubles + 1 + kVertices + 3 * v;
     mesh.vertices.push_back({das.number(at), das.number(at + 1), das.number(at + 2)});
@@ -138,8 +143,6 @@ TriangleMesh read_dsk(const MeshFile& file) {
     const Segment segment{das.integer(at + 1), das.integer(at + 2), das.integer(at + 4)};
     add_plates(file, das, segment, mesh);
     at = segment.next;
-    if (mesh.vertices.size() * 3 * sizeof(double) > file.bytes.size())
-      file.fail("", "its segments lie over each other", kFetch);
   }
   return mesh;
 }

@@ -96,7 +96,11 @@ class GlbReader {
 
   TriangleMesh read() {
     try {
-      document_ = GltfJson::parse(json_);
+      constexpr int kDeepest = 64;  // copies of a document call themselves for each level
+      document_ = GltfJson::parse(json_, [&](int depth, GltfJson::parse_event_t, GltfJson&) {
+        if (depth > kDeepest) file_.fail("its JSON", "is nested too deep", kRemedy);
+        return true;
+      });
       for (const GltfJson& required : document_.value("extensionsRequired", GltfJson::array())) {
         const auto name = required.get<std::string>();
         const auto is_about = [&](const char* word) { return name.find(word) != name.npos; };

@@ -9,6 +9,7 @@
 #include "geometry/io/pds_label_internal.h"
 #include "numerics/files/gzip_stream.h"
 #include "numerics/files/zstd_stream.h"
+#include "numerics/length_unit.h"
 
 namespace astrolith {
 namespace {
@@ -113,12 +114,13 @@ std::string line_unit(std::string_view line) {
 // The unit of a format that has one: metres of a glTF, unless its writer, this program, states another of
 // unknown length; kilometres of a SPICE kernel.
 std::string unit_of_format(std::string_view start) {
-  if (start.starts_with("DAS/DSK")) return "km";
+  if (start.starts_with("DAS/DSK") || start.starts_with("NAIF/DSK")) return "km";
   if (!start.starts_with("glTF")) return {};
   constexpr std::string_view kOwn = "\"length_unit\":\"";
   const std::size_t at = start.substr(0, kMostHeader).find(kOwn);
   const std::string_view own = at == start.npos ? "" : first_letters(start.substr(at + kOwn.size()));
-  return own.empty() || own.size() > kLongestUnit ? "m" : std::string(own);
+  // The reader has heeded the scale that files of November 2026 and before have for a known unit.
+  return own.empty() || own.size() > kLongestUnit || has_known_length(own) ? "m" : std::string(own);
 }
 
 }  // namespace

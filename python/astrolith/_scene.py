@@ -238,7 +238,7 @@ class Scene:
 
     Notes
     -----
-    Calls may run in several threads of Python; they do not hold its lock, and with `detail` one waits for the other. A
+    Calls may run in several threads of Python; they do not hold its lock, and with `detail` one waits for the other, :meth:`pose` too. A
     call takes the poses of its beginning. The same arguments give the same arrays for any number of threads; ranges with
     `detail` are those of the ground that the last picture, or :meth:`look`, needed.
 
@@ -272,7 +272,7 @@ class Scene:
             if not any(is_recipe(body) for body in given):
                 raise ValueError("detail: is for recipes, and these are meshes; leave it out")
         self._scene = _synthesis.Scene()
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._detailed: list[Any] = []
         for k, (body, value) in enumerate(zip(given, albedos)):
             name = f"bodies[{k}]" if isinstance(bodies, list) else "bodies"
@@ -324,6 +324,8 @@ class Scene:
         ValueError
             The ground would have more than 3e7 triangles.
         """
+        if not isinstance(camera, Camera):
+            raise TypeError(f"camera: must be an astrolith.Camera, and is {type(camera).__name__}")
         with self._lock:
             return self._look(camera, threads, progress)
 
@@ -356,7 +358,8 @@ class Scene:
             Where the origin of the body stands.
         """
         number = _arrays.integer(body, "body", 0, self._size - 1)
-        self._scene.place(number, _matrix(rotation, "rotation").tolist(), _arrays.vector(position, "position"))
+        with self._lock if self._detailed else contextlib.nullcontext():
+            self._scene.place(number, _matrix(rotation, "rotation").tolist(), _arrays.vector(position, "position"))
 
     def image(
         self,

@@ -70,47 +70,53 @@ class DetailedBody {
   // Adds the body to a scene, as it is seen from far away.
   void add_to(Scene& scene, int threads, nb::object progress) {
     constexpr double kFar = 1e15;
-    run_job(
+    Look look;
+    Scene longer = run_job(
         std::move(progress), threads,
-        [&](JobState& state) {
-          shown_ = ground_->look({{}, {0.0, 0.0, -kFar}, kIdentity3}, state.progress("ground"));
-          body_ = scene.add(shown_->mesh, albedos());
-          return true;
+        [&, longer = scene](JobState& state) mutable {
+          look = ground_->look({{}, {0.0, 0.0, -kFar}, kIdentity3}, state.progress("ground"));
+          body_ = longer.add(look->mesh, albedos(*look));
+          return longer;
         },
         true);
+    scene = std::move(longer);
+    shown_ = std::move(look);
   }
 
-  // Makes the body what the camera needs, and returns the edge of the finest cells.
+  // Makes the body what the camera needs, and returns the edge of the finest cells. The scene, which other
+  // threads of Python may change meanwhile, gets the new mesh at the end, under Python's lock.
   double look(Scene& scene, int width, int height, const std::array<double, 10>& calibration,
               const std::array<double, 3>& position, const Matrix3& axes, int threads, nb::object progress) {
-    Scene changed = scene;
+    const SceneCamera camera =
+        in_axes_of_body(make_camera(width, height, calibration, position, axes), scene.pose(body_));
+    Look look;
+    Scene made;
     run_job(
         std::move(progress), threads,
         [&](JobState& state) {
-          const SceneCamera camera = make_camera(width, height, calibration, position, axes);
-          const auto look =
-              ground_->look(in_axes_of_body(camera, scene.pose(body_)), state.progress("ground"));
-          if (look == shown_) return true;
-          shown_ = look;
-          changed.replace(body_, look->mesh, albedos());
+          look = ground_->look(camera, state.progress("ground"));
+          if (look != shown_) made.add(look->mesh, albedos(*look));
           return true;
         },
         true);
-    scene = std::move(changed);
+    if (made.size() > 0) scene.replace(body_, made, 0);
+    shown_ = std::move(look);
     return shown_->finest;
   }
 
   std::size_t triangles() const { return shown_->mesh.triangles.size(); }
 
  private:
-  std::vector<float> albedos() const {
-    if (albedo_ <= 0.0) return shown_->albedo;
-    return std::vector<float>(shown_->mesh.vertices.size(), static_cast<float>(albedo_));
+  using Look = std::shared_ptr<const GroundLook>;
+
+  std::vector<float> albedos(const GroundLook& look) const {
+    if (albedo_ <= 0.0) return look.albedo;
+    return std::vector<float>(look.mesh.vertices.size(), static_cast<float>(albedo_));
   }
 
   double albedo_;
   std::unique_ptr<ViewGround> ground_;
-  std::shared_ptr<const GroundLook> shown_;
+  Look shown_;
   std::size_t body_ = 0;
 };
 

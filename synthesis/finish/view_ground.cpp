@@ -211,35 +211,57 @@ class Cubes {
     const SeenPyramid seen(camera, recipe_.origin);
     std::vector<CubeSet> shown{all_};
     double triangles = 0.0;
-    for (int level = 0; level < kMostLevels && !shown.back().empty(); ++level) {
-      if (!report(progress, 0.0, fmt::format("cells of {:.3g}", lattice_.cell(level))))
-        throw WorkError("scene: stopped before the ground was made");
-      make_tiles(shown.back(), progress);
-      for (const GroundCube& cube : shown.back())
-        triangles += static_cast<double>(tiles_.at(cube)->mesh.triangles.size());
-      if (triangles > kMostTriangles) {
-        throw InputError(name_ +
-                         ": detail: this picture would take more than 3e7 triangles; raise detail, "
-                         "or take fewer pixels");
-      }
-      shown.push_back(too_coarse(shown.back(), level, seen));
+    try {
+      refine(shown, triangles, seen, progress);
+    } catch (...) {
+      forget_all_but(shown_);
+      throw;
     }
-    if (shown.back().empty()) shown.pop_back();
     if (look_ && shown == shown_) return look_;
-    std::erase_if(tiles_, [&](const auto& entry) {
-      const auto has = [&](const std::vector<CubeSet>& levels) {
-        const auto level = static_cast<std::size_t>(entry.first.level);
-        return level < levels.size() && levels[level].contains(entry.first);
-      };
-      return !has(shown) && !has(shown_);
-    });
-    shown_ = std::move(shown);
+    const std::vector<CubeSet> before = std::exchange(shown_, std::move(shown));
+    forget_all_but(shown_, before);
     look_ = std::make_shared<const GroundLook>(join());
     return look_;
   }
 
  private:
   using CubeSet = std::set<GroundCube>;
+
+  // Adds level after level, until cells look narrow enough.
+  void refine(std::vector<CubeSet>& shown, double& triangles, const SeenPyramid& seen,
+              const Progress& progress) {
+    for (int level = 0; level < kMostLevels && !shown.back().empty(); ++level) {
+      if (!report(progress, 0.0, fmt::format("cells of {:.3g}", lattice_.cell(level))))
+        throw WorkError("scene: stopped before the ground was made");
+      // Half of the cubes hold no ground, and even ground has 8,000 triangles in a cube.
+      constexpr double kLeastInACube = 2000.0;
+      require_few(triangles + kLeastInACube * static_cast<double>(shown.back().size()));
+      make_tiles(shown.back(), progress);
+      for (const GroundCube& cube : shown.back())
+        triangles += static_cast<double>(tiles_.at(cube)->mesh.triangles.size());
+      require_few(triangles);
+      shown.push_back(too_coarse(shown.back(), level, seen));
+    }
+    if (shown.back().empty()) shown.pop_back();
+  }
+
+  void require_few(double triangles) const {
+    if (triangles <= kMostTriangles) return;
+    throw InputError(name_ +
+                     ": detail: this picture would take more than 3e7 triangles; raise detail, or "
+                     "take fewer pixels");
+  }
+
+  // Drops the tiles that no level of either shows.
+  void forget_all_but(const std::vector<CubeSet>& levels, const std::vector<CubeSet>& others = {}) {
+    std::erase_if(tiles_, [&](const auto& entry) {
+      const auto has = [&](const std::vector<CubeSet>& shown) {
+        const auto level = static_cast<std::size_t>(entry.first.level);
+        return level < shown.size() && shown[level].contains(entry.first);
+      };
+      return !has(levels) && !has(others);
+    });
+  }
 
   const LevelField& field_for(const GroundCube& cube, const Progress& progress) {
     const GroundCube block = block_begin(cube);

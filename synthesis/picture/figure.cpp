@@ -101,9 +101,12 @@ Axis linear_axis(double low, double high, const std::string& label, double small
   Axis axis{low, high, {}, label};
   const double step = std::max(smallest_step, round_step(high - low));
   const double rounding = 1e-9 * step;
-  const auto first = static_cast<int>(std::ceil((low - rounding) / step));
-  const auto last = static_cast<int>(std::floor((high + rounding) / step));
-  for (int k = first; k <= last; ++k) axis.ticks.emplace_back(k * step, fmt::format("{:g}", k * step));
+  // As many digits as tell neighbours apart.
+  const double most = std::max(std::fabs(low), std::fabs(high));
+  const int digits = std::clamp(2 + static_cast<int>(std::ceil(log10(std::max(1.0, most / step)))), 6, 17);
+  const double first = std::ceil((low - rounding) / step) + 0.0, last = std::floor((high + rounding) / step);
+  for (double k = first; k <= last && axis.ticks.size() < 20; k += 1.0)
+    axis.ticks.emplace_back(k * step, fmt::format("{:.{}g}", k * step, digits));
   return axis;
 }
 

@@ -202,8 +202,8 @@ std::size_t Scene::add(const TriangleMesh& mesh, const std::vector<float>& albed
   return bodies_.size() - 1;
 }
 
-void Scene::replace(std::size_t body, const TriangleMesh& mesh, const std::vector<float>& albedo) {
-  placed(body).body = make_body(mesh, albedo);
+void Scene::replace(std::size_t body, const Scene& other, std::size_t of_other) {
+  placed(body).body = other.bodies_.at(of_other).body;
 }
 
 void Scene::place(std::size_t body, const BodyPose& pose) {

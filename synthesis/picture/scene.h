@@ -68,8 +68,9 @@ class Scene {
   // have the albedo where sun and viewer are above the ground. Throws InputError for a mesh that RayScene
   // refuses and for another number of albedos.
   std::size_t add(const TriangleMesh& mesh, const std::vector<float>& albedo = {});
-  // Gives a body another mesh in the same pose; throws as add() and place() do.
-  void replace(std::size_t body, const TriangleMesh& mesh, const std::vector<float>& albedo = {});
+  // Gives a body the mesh and the albedo of a body of another scene, and keeps its pose; throws as place()
+  // does.
+  void replace(std::size_t body, const Scene& other, std::size_t of_other);
   // Throws InputError for a body that is not there and for a pose that is none.
   void place(std::size_t body, const BodyPose& pose);
   const BodyPose& pose(std::size_t body) const { return bodies_.at(body).pose; }

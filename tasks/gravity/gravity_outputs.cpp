@@ -85,7 +85,8 @@ void write_vtp(const std::vector<GravityColumn>& columns, const GravityBody& bod
       "<PolyData><Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n<Points>\n",
       body.unit, tool, mesh.vertices.size(), mesh.triangles.size());
   text += arrays.add("Float64", "Points", 3, points) + "</Points>\n<Polys>\n";
-  text += arrays.add("Int64", "connectivity", 1, corners) + arrays.add("Int64", "offsets", 1, ends);
+  text += arrays.add("Int64", "connectivity", 1, corners);
+  text += arrays.add("Int64", "offsets", 1, ends);
   text += fmt::format("</Polys>\n<{}>\n", kind);
   for (std::size_t k = 3; k < columns.size(); ++k)
     text += arrays.add("Float64", columns[k].name, 1, columns[k].values);

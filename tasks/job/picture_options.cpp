@@ -162,16 +162,16 @@ void PictureOptions::check_file(const std::filesystem::path& file) const {
 }
 
 void PictureOptions::write(const Job& job, RenderedPicture picture, const std::filesystem::path& file) const {
-  if (is_page(file)) {
-    write_page(picture, file);
-  } else {
-    write_png(std::move(picture).marked(), bits, background == "transparent", file);
-  }
   for (const std::size_t view : picture.empty_views) {
     job.say(
         fmt::format("note: {}: the body covers no pixel of view {}; change the target of its camera, or "
                     "bring a pinhole nearer",
                     file.string(), view + 1));
+  }
+  if (is_page(file)) {
+    write_page(picture, file);
+  } else {
+    write_png(std::move(picture).marked(), bits, background == "transparent", file);
   }
 }
 

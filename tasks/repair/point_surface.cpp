@@ -14,6 +14,7 @@
 #include "geometry/points/point_tree_internal.h"
 #include "geometry/surface/surface_tree.h"
 #include "numerics/errors.h"
+#include "numerics/jacobi_rotation.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
 #include "tasks/repair/cgal_repair_internal.h"
@@ -303,6 +304,27 @@ void settle(TriangleMesh& mesh, const std::vector<Vec3d>& points) {
   mesh = moved_outwards(std::move(mesh), normals, mean - variance * curvature);
 }
 
+// Throws InputError for points in one plane or line, through which no closed surface goes.
+void require_solid(const std::vector<Vec3d>& points, const std::string& name) {
+  constexpr double kThin = 1e-4;  // the thickness over the extent
+  Vec3d mean;
+  for (const Vec3d& p : points) mean += (1.0 / static_cast<double>(points.size())) * p;
+  Matrix3 covariance{}, axes = kIdentity3;
+  for (const Vec3d& p : points) {
+    const std::array<double, 3> d{p.x - mean.x, p.y - mean.y, p.z - mean.z};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) covariance[i][j] += d[i] * d[j];
+  }
+  constexpr int kSweeps = 12;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}})
+      rotate_to_diagonal(covariance, axes, i, j);
+  }
+  const auto [least, most] = std::minmax({covariance[0][0], covariance[1][1], covariance[2][2]});
+  if (least > kThin * kThin * most) return;
+  throw InputError(name + ": its points lie in one plane or line; a closed surface needs those of all sides");
+}
+
 void tell_points(const Progress& progress, double fraction) {
   if (!report(progress, fraction, "points"))
     throw WorkError("stopped while a surface was laid through points");
@@ -318,7 +340,9 @@ PointSurface surface_through(const TriangleMesh& points, const std::string& name
   if (cloud.points.size() < kFewestPoints)
     throw InputError(name + ": holds " + std::to_string(cloud.points.size()) +
                      " points; a surface needs at least 16");
+  require_solid(cloud.points, name);
   Scatter scatter = find_scatter(cloud, result);
+  require_solid(cloud.points, name);  // without strays
   const std::vector<Vec3d> whole = cloud.points;
   if (whole.size() > kMostPoints) {
     const double growth =

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <span>
-#include <thread>
 
 #include "geometry/io/mesh_format.h"
 #include "geometry/io/ply_stream_writer.h"
@@ -135,9 +134,7 @@ double gravity_seconds(const TriangleMesh& coarse, const MeshEstimate& mesh) {
          timed([&] { gravity.at(points, kTolerance); });
 }
 
-int thread_count(const PlannedRun& run) {
-  return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
+int thread_count(const PlannedRun& run) { return run.threads > 0 ? run.threads : usable_processors(); }
 
 }  // namespace
 

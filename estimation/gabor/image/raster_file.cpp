@@ -1,5 +1,6 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_minixml.h>
 #include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_pam.h>
@@ -10,6 +11,7 @@
 #include <atomic>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -104,8 +106,7 @@ class QuietGdal {
   CPLConfigOptionSetter grid_type_{"AAIGRID_DATATYPE", "Float64",
                                    false};  // "NaN" among whole numbers is none
   CPLConfigOptionSetter no_python_{"GDAL_VRT_ENABLE_PYTHON", "NO", false};
-  CPLConfigOptionSetter raw_{"GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL",
-                             false};  // require_own_folder() looks
+  CPLConfigOptionSetter raw_{"GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "SIBLING_OR_CHILD_OF_VRT_PATH", false};
   CPLConfigOptionSetter no_folder_{"GDAL_DISABLE_READDIR_ON_OPEN", "TRUE", false};
   CPLConfigOptionSetter small_cache_{"GDAL_CACHEMAX", "128", false};  // MB; counts at its first use only
   CPLConfigOptionSetter no_network_{"CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false};
@@ -131,11 +132,14 @@ std::unique_ptr<GDALDataset> open_raster(const std::string& name) {
 // raster is that of a copy in memory, with a blank in front of the row. Null for other files.
 std::unique_ptr<GDALDataset> open_grid_of_nan(const std::string& name) {
   std::ifstream in(name, std::ios::binary);
-  std::string line;
+  std::string line(5, '\0');
   const auto starts_with = [&](const char* word) { return STARTS_WITH_CI(line.c_str(), word); };
-  if (!std::getline(in, line) || (!starts_with("ncols") && !starts_with("nrows"))) return nullptr;
+  in.read(line.data(), static_cast<std::streamsize>(line.size()));
+  if (!in || (!starts_with("ncols") && !starts_with("nrows"))) return nullptr;
+  std::getline(in, line);
   std::streamoff at = in.tellg();
-  while (std::getline(in, line) && !starts_with("nan") && line.size() < 200 && std::isalpha(line[0]) != 0)
+  while (std::getline(in, line) && !starts_with("nan") && line.size() < 200 &&
+         std::isalpha(static_cast<unsigned char>(line[0])) != 0)
     at = in.tellg();
   if (!starts_with("nan")) return nullptr;
   const auto put = [](const std::string& file, const std::filesystem::path& from, std::streamoff blank) {
@@ -180,6 +184,7 @@ std::unique_ptr<GDALDataset> open_raw(const std::string& name, const ImageSize& 
       : each == 1 ? "Byte"
                   : "UInt16",
       escaped, each, static_cast<std::int64_t>(each) * size.width);
+  const CPLConfigOptionSetter any_place("GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL", false);
   const char* const drivers[] = {"VRT", nullptr};
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(description.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
@@ -214,26 +219,41 @@ void require_own_folder(GDALDataset& dataset, const std::string& name) {
   }
 }
 
-// The files that a list of sources names lie beside it, and none is a list itself: GDAL opens what they name.
+// Whether a list of sources may name this file: it lies beside the list, and is no list itself.
+bool is_plain_source(const CPLXMLNode& element, const std::string& source, const std::string& name) {
+  if (!EQUAL(CPLGetXMLValue(&element, "relativeToVRT", "0"), "1") ||
+      source.find_first_of("/\\:&") != source.npos)
+    return false;
+  const std::filesystem::path file = std::filesystem::path(name).parent_path() / source;
+  if (!std::filesystem::is_regular_file(file)) return false;
+  std::ifstream in(file, std::ios::binary);
+  char first = ' ';
+  while (std::isspace(static_cast<unsigned char>(first)) != 0 && in.get(first)) {
+  }
+  return first != '<';
+}
+
+// GDAL opens the files that a list of sources names, in elements whose names it reads in any case.
 void require_plain_sources(const std::string& name) {
   std::ifstream in(name, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  constexpr std::string_view kNamesAFile[] = {"<SourceFilename", "<SourceDataset", "<DatasetName",
-                                              "<Filename"};
-  for (const std::string_view element : kNamesAFile) {
-    for (std::size_t at = 0; (at = text.find(element, at)) != text.npos;) {
-      const std::size_t start = std::min(text.find('>', at), text.size() - 1) + 1;
-      const std::string source = text.substr(start, text.find('<', start) - start);
-      const bool relative = text.substr(at, start - at).find("relativeToVRT=\"1\"") != std::string::npos;
-      const std::filesystem::path file = std::filesystem::path(name).parent_path() / source;
-      std::string first(1, '<');
-      if (relative && source.find_first_of("/\\:&") == source.npos && std::filesystem::is_regular_file(file))
-        std::ifstream(file, std::ios::binary).read(first.data(), 1);
-      if (first == "<")
-        throw InputError(
-            name + ": names " + source.substr(0, 80) +
-            ", which is no picture of its own folder; put both into one, with relativeToVRT=\"1\"");
-      at = start;
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const CPLXMLTreeCloser tree(CPLParseXMLString(text.c_str()));
+  std::vector<const CPLXMLNode*> waiting{tree.get()};
+  while (!waiting.empty()) {
+    const CPLXMLNode* const node = waiting.back();
+    waiting.pop_back();
+    if (node == nullptr) continue;
+    waiting.push_back(node->psNext);
+    waiting.push_back(node->psChild);
+    const auto is = [&](const char* element) { return EQUAL(node->pszValue, element); };
+    if (node->eType != CXT_Element ||
+        (!is("SourceFilename") && !is("SourceDataset") && !is("DatasetName") && !is("Filename")))
+      continue;
+    const std::string source = CPLGetXMLValue(node, nullptr, "");
+    if (!is_plain_source(*node, source, name)) {
+      throw InputError(
+          name + ": names " + source.substr(0, 80) +
+          ", which is no picture of its own folder; put both into one, with relativeToVRT=\"1\"");
     }
   }
 }
@@ -243,7 +263,7 @@ void require_own_header(GDALDataset& raster, const std::string& name) {
   GDALRasterBand& band = *raster.GetRasterBand(1);
   const std::string bits = structure(band, "NBITS");
   const double row =
-      std::ceil((bits.empty() ? GDALGetDataTypeSizeBits(band.GetRasterDataType()) : std::stoi(bits)) *
+      std::ceil((bits.empty() ? GDALGetDataTypeSizeBits(band.GetRasterDataType()) : std::atoi(bits.c_str())) *
                 static_cast<double>(raster.GetRasterXSize()) / 8.0);
   const char* const offset = raster.GetMetadataItem("header_offset", "ENVI");
   const char* const packed = raster.GetMetadataItem("file_compression", "ENVI");
@@ -496,6 +516,7 @@ void RasterFile::find_scale(const std::string& height_unit) {
     scale.perhaps_degrees = steps->perhaps_degrees;
     scale.unknown = steps->unknown;
     turn_to_north(*steps);
+    if (orientation_ > 4) std::swap(scale.pixel_width, scale.pixel_height);  // rows become columns
     const double shear = steps->column.east * steps->row.east + steps->column.north * steps->row.north;
     scale.sheared = std::abs(shear) > 0.01 * scale.pixel_width * scale.pixel_height;
     scale.pixel_source = steps->source;
