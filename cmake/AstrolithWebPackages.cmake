@@ -10,7 +10,7 @@ foreach(library nlohmann fmt)
 endforeach()
 
 foreach(target TBB::tbb nlohmann_json::nlohmann_json fmt::fmt OpenSSL::Crypto PkgConfig::ZSTD ZLIB::ZLIB embree OpenMeshCore OpenMeshTools
-    Eigen3::Eigen nanoflann::nanoflann PkgConfig::SPNG TIFF::TIFF)
+    Eigen3::Eigen nanoflann::nanoflann PkgConfig::SPNG PkgConfig::CAIRO TIFF::TIFF)
   add_library(${target} INTERFACE IMPORTED GLOBAL)
 endforeach()
 target_include_directories(TBB::tbb INTERFACE ${compat} ${header_folder})
