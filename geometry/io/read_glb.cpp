@@ -111,7 +111,7 @@ class GlbReader {
       visited_.resize(document_.at("nodes").size());
       const Placement pole_up{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};  // (x, y, z) -> (x, -z, y)
       for (const GltfJson& node : scene.at("nodes")) add_node(whole(node), pole_up);
-      // Of our own files: readers add the origin of a whole body, not that of a patch.
+      // Files of this program state an origin: readers add that of a whole body, not that of a patch.
       const GltfJson extras =
           document_.value("asset", GltfJson::object()).value("extras", GltfJson::object());
       if (extras.is_object() && extras.value("whole_body", false)) {

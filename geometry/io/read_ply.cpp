@@ -256,7 +256,7 @@ TriangleMesh read_ply(const MeshFile& file) {
   const PlyHeader header = read_ply_header(scan);
   TriangleMesh mesh = read_after(header, file, scan, nothing);
   if (mesh.triangles.empty()) {
-    // Of points, normals of any length say where outside is.
+    // The normals of points say where outside is, whatever their length.
     for (Vec3d& n : mesh.normals) n = normalized(n);
   }
   if (mesh.normals.size() != mesh.vertices.size() || !all_unit(mesh.normals)) mesh.normals.clear();

@@ -210,9 +210,8 @@ class Cubes {
   std::shared_ptr<const GroundLook> look(const SceneCamera& camera, const Progress& progress) {
     const SeenPyramid seen(camera, recipe_.origin);
     std::vector<CubeSet> shown{all_};
-    double triangles = 0.0;
     try {
-      refine(shown, triangles, seen, progress);
+      refine(shown, seen, progress);
     } catch (...) {
       forget_all_but(shown_);
       throw;
@@ -228,8 +227,8 @@ class Cubes {
   using CubeSet = std::set<GroundCube>;
 
   // Adds level after level, until cells look narrow enough.
-  void refine(std::vector<CubeSet>& shown, double& triangles, const SeenPyramid& seen,
-              const Progress& progress) {
+  void refine(std::vector<CubeSet>& shown, const SeenPyramid& seen, const Progress& progress) {
+    double triangles = 0.0;
     for (int level = 0; level < kMostLevels && !shown.back().empty(); ++level) {
       if (!report(progress, 0.0, fmt::format("cells of {:.3g}", lattice_.cell(level))))
         throw WorkError("scene: stopped before the ground was made");

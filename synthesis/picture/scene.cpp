@@ -173,19 +173,6 @@ struct Scene::Hit {
   bool found() const { return range < kNone; }
 };
 
-std::shared_ptr<const Scene::Body> Scene::make_body(const TriangleMesh& mesh,
-                                                    const std::vector<float>& albedo) {
-  if (!albedo.empty() && albedo.size() != mesh.vertices.size()) {
-    throw InputError(fmt::format("scene: {} albedos for {} vertices; give one a vertex, or none",
-                                 albedo.size(), mesh.vertices.size()));
-  }
-  for (const float a : albedo) {
-    if (!(a >= 0 && a <= 10))
-      throw InputError(fmt::format("scene: an albedo of {:g}; it must be 0 to 10", a));
-  }
-  return std::make_shared<const Body>(mesh, albedo);
-}
-
 Scene::Placed& Scene::placed(std::size_t body) {
   if (body >= bodies_.size()) {
     throw InputError(
@@ -198,7 +185,15 @@ std::size_t Scene::add(const TriangleMesh& mesh, const std::vector<float>& albed
   constexpr std::size_t kMostBodies = 1000;
   if (bodies_.size() == kMostBodies)
     throw InputError(fmt::format("scene: holds at most {} bodies", kMostBodies));
-  bodies_.push_back({make_body(mesh, albedo), {}});
+  if (!albedo.empty() && albedo.size() != mesh.vertices.size()) {
+    throw InputError(fmt::format("scene: {} albedos for {} vertices; give one a vertex, or none",
+                                 albedo.size(), mesh.vertices.size()));
+  }
+  for (const float a : albedo) {
+    if (!(a >= 0 && a <= 10))
+      throw InputError(fmt::format("scene: an albedo of {:g}; it must be 0 to 10", a));
+  }
+  bodies_.push_back({std::make_shared<const Body>(mesh, albedo), {}});
   return bodies_.size() - 1;
 }
 

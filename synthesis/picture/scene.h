@@ -98,7 +98,6 @@ class Scene {
   };
   struct Hit;
 
-  static std::shared_ptr<const Body> make_body(const TriangleMesh& mesh, const std::vector<float>& albedo);
   Placed& placed(std::size_t body);
   Hit first_hit(const Vec3d& origin, const Vec3d& direction) const;
   bool sees_sun(const Hit& hit, const Vec3d& point, const Vec3d& lift, const Vec3d& sun) const;

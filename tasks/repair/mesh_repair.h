@@ -76,7 +76,7 @@ struct MeshRepair {
   std::int64_t cavities = 0;
   std::int64_t undecided_parts = 0;  // of which finding this out would have taken too long
   bool united = false;               // overlapping and nested parts are one surface now
-  // Of a surface through points; lengths in the unit of the mesh.
+  // What is known of a surface through points; lengths in the unit of the mesh.
   std::int64_t points = 0, stray_points = 0;
   Vec3d stray;                                         // the farthest of them
   double noise = 0.0;                                  // root mean square of the points' distances from it

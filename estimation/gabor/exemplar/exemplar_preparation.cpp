@@ -104,7 +104,7 @@ PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const Gre
     heed_exemplar(part, 0.8);
     best.scores[number] = texture_score(texture, judged);
     // A texture takes its pieces from all over the continued image, whose slopes are its own in the mean.
-    // Those of one texture would scatter.
+    // The slopes of a single texture would scatter.
     const GreyImage middle = luma.middle(kMostJudgedSide);
     const bool mirrors = variant == ExemplarVariant::kMirrored;
     best.scores[number]->direction =

@@ -71,7 +71,8 @@ class RasterFile {
 
   int width() const;  // as stored, before the picture is turned upright
   int height() const;
-  // Of EXIF, 1 .. 8, or as it stands on the ground: north above and east to the right.
+  // The orientation as EXIF counts it, 1 .. 8, or as the raster stands on the ground: north above and east to
+  // the right.
   int orientation() const { return orientation_; }
   const std::optional<StatedScale>& scale() const { return scale_; }
   // What was not used of the file. The share of transparent pixels is known after read().
