@@ -6,17 +6,34 @@
     body_figure.py ITOKAWA.astro --sheet 8 -o thousand.jpg                    # the first 64 seeds of one body
     body_figure.py --library 6 -o library.jpg                                 # the bodies of the library, six in a row
     body_figure.py --draws 8 -o drawn_bodies.jpg                              # the first 48 draws of the library's population
+    body_figure.py --kinds -o kinds.jpg                                       # ten kinds of bodies, from examples and the library
     body_figure.py RECIPE.astro --zoom X Y Z --finish itokawa -o zoom.jpg     # a body, and its ground at a point ever finer
 
 Needs the Python package (build/ci/python in PYTHONPATH) and Pillow. Recipes: fit_shape SHAPE.ply -o RECIPE.astro --spheres 80
 """
 import argparse
+from pathlib import Path
 
 import astrolith
 import numpy as np
 from PIL import Image
 
 VIEWS = ((0.3, -1.0, 0.5), (0.2, 1.0, 0.35), (1.0, 0.4, 0.3), (1.0, 0.3, 0.2))
+
+EXAMPLES = Path(__file__).parent.parent / "synthesis/examples"
+ROUGH = {"details": "relief", "finish": "bennu", "from_": 50, "to": 2}
+KINDS = (
+    (EXAMPLES / "rubble_pile.json", {}),
+    ("asteroids", {"near": "bennu", "diameter": "500", "seed": 2, **ROUGH}),
+    ("itokawa", {"like": True, "seed": 5, "finer": 1, "finish": "itokawa", "from_": 0.04, "to": 0.002}),
+    ("asteroids", {"class_": "contact_binary", "diameter": "600", "seed": 4, **ROUGH}),
+    (EXAMPLES / "monolith.json", {}),
+    ("eros", {"like": True, "seed": 2, "finer": 2}),
+    (EXAMPLES / "steins.json", {}),
+    (EXAMPLES / "lutetia.json", {}),
+    (EXAMPLES / "comet_nucleus.json", {}),
+    (EXAMPLES / "ceres.json", {}),
+)
 
 
 def shot(body, view, triangles=1e6, size=(620, 420), sun=(-0.8, 0.45, 0.4)):
@@ -45,6 +62,7 @@ def main():
     parser.add_argument("--sheet", type=int, metavar="SIDE", help="a square of likenesses of the first recipe")
     parser.add_argument("--library", type=int, metavar="COLUMNS", help="a sheet of the bodies of the library")
     parser.add_argument("--draws", type=int, metavar="COLUMNS", help="a sheet of 48 bodies that nobody has seen; a divisor of 48")
+    parser.add_argument("--kinds", action="store_true", help="a sheet of ten kinds of bodies")
     parser.add_argument("--zoom", type=float, nargs=3, metavar=("X", "Y", "Z"), help="the ground at this point of the recipe")
     parser.add_argument("--finish", default="itokawa", help="the known body whose boulders lie on that ground")
     parser.add_argument("-o", dest="output", required=True)
@@ -57,6 +75,10 @@ def main():
         drawn = (astrolith.mesh("asteroids", seed=seed, albedo="drawn", triangles=1e5) for seed in range(48))
         shots = [shot(mesh, (1.0, 0.6, 0.5), size=(180, 150)) for mesh in drawn]
         rows = [shots[first:first + given.draws] for first in range(0, len(shots), given.draws)]
+    elif given.kinds:
+        made = (astrolith.mesh(recipe, resolution=512, min_component=1e-3, **options) for recipe, options in KINDS)
+        shots = [shot(mesh, (0.3, -1.0, 0.35), size=(380, 300)) for mesh in made]
+        rows = [shots[:5], shots[5:]]
     elif given.zoom:
         rows = zoom(recipes[0], given.zoom, given.finish)
     elif given.sheet:
