@@ -1,4 +1,4 @@
-// Recipes' JSON documents as small binary files. docs/recipe.md states the format.
+// Recipes' JSON documents as small binary files. docs/recipe_compact.md states the format.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fills the tables of docs/recipe.md and docs/summaries.md, and finds lines and paragraphs that are too long to read.
+"""Fills the tables of docs/recipe*.md and docs/summaries*.md, and finds lines and paragraphs that are too long to read.
 
 docs.py          writes the tables
-docs.py --check  ends with status 1, and a line for each fault, where a table is stale or a text too long
+docs.py --check  ends with status 1, and a line for each fault, where a table is stale, a text too long or a link dead
 
 A table stands between two comments. One of summaries names a section of apps/summary_fields.json. One of the recipe names
 definitions of recipe/recipe.schema.json, and shows all their fields, all but some (`without`) or some only (`only`):
@@ -20,6 +20,7 @@ SCHEMA = json.loads((ROOT / "recipe/recipe.schema.json").read_text())
 SUMMARIES = json.loads((ROOT / "apps/summary_fields.json").read_text())
 TABLE = re.compile(r"<!-- (fields|summary) of ([^>]+?)(?: without ([^>]+?))?(?: only ([^>]+?))? -->\n.*?<!-- end -->", re.S)
 LONGEST_LINE = 120  # characters outside tables
+LONGEST_PAGE = 250  # lines of a page of docs/
 LONGEST_PARAGRAPH = 600  # characters without the addresses of links: five rendered lines
 BIG = 1e12  # the largest magnitude of any number: not worth a word in each row
 
@@ -129,12 +130,41 @@ def too_long(name, text):
             yield f"{name}:{number}: a paragraph of {length} characters; break it at {LONGEST_PARAGRAPH}"
 
 
+def without_code(text):
+    """The text, in which the lines of code are empty and code within a line is gone."""
+    text = re.sub(r"^```.*?^```|^    .*?$", lambda code: "\n" * code[0].count("\n"), text, flags=re.S | re.M)
+    return re.sub(r"`[^`\n]*`", "", text)
+
+
+def anchors_of(file):
+    """The anchors of a page's headings, as GitHub and the site make them."""
+    if file.suffix != ".md":
+        return set()
+    text = re.sub(r"^```.*?^```", "", file.read_text(encoding="utf-8"), flags=re.S | re.M)
+    names = [re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in re.findall(r"^#+ (.*)$", text, re.M)]
+    return {name if names[:i].count(name) == 0 else f"{name}-{names[:i].count(name)}" for i, name in enumerate(names)}
+
+
+def dead_links(file, text):
+    """Complaints about links within the repository to files, images and headings that are not there."""
+    text = without_code(text)
+    for link in re.finditer(r"\]\(([^)\s]+)\)|^\[[^\]]+\]: (\S+)$", text, re.M):
+        address = link[1] or link[2]
+        path, _, anchor = address.partition("#")
+        target = (file.parent / path).resolve() if path else file
+        if re.match(r"[a-z]+:", address) or (target.exists() and (not anchor or anchor in anchors_of(target))):
+            continue
+        yield f"{file.name}:{text[: link.start()].count(chr(10)) + 1}: the link to {address} is dead"
+
+
 def main():
     faults, texts = [], []
     for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]):
         text = file.read_text(encoding="utf-8")
         texts.append(TABLE.sub(table, text))
-        faults += too_long(file.name, texts[-1])
+        faults += [*too_long(file.name, texts[-1]), *dead_links(file, texts[-1])]
+        if file.parent != ROOT and (lines := texts[-1].count("\n")) > LONGEST_PAGE:
+            faults.append(f"{file.name}: a page of {lines} lines; split it at {LONGEST_PAGE}")
         if texts[-1] != text and sys.argv[1:] == ["--check"]:
             faults.append(f"{file.name}: its tables are stale; run scripts/docs.py")
         elif texts[-1] != text:

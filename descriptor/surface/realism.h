@@ -60,7 +60,7 @@ class CovarianceDifference {
 
 inline constexpr double kPassingP = 0.05, kPassingDistance = 0.13;
 
-// Below so many points the test seldom notices that all relief is gone (docs/descriptor.md).
+// Below so many points the test seldom notices that all relief is gone (docs/surfaces.md).
 inline constexpr std::int64_t kFewestJudged = 1400;
 
 // The difference of two surfaces in one statistic.

@@ -24,7 +24,7 @@ class SurfaceDescription:
     places
         float64 points on the surface, (n, 3).
     values
-        What was measured at the places, float64 (n,) each, by its name in ``docs/descriptor.md``: "roughness_3" within
+        What was measured at the places, float64 (n,) each, by its name in ``docs/surfaces.md``: "roughness_3" within
         3 mean edges, then those of 6, 12 and 24 edges, and "bend" and "slope", which have no radius.
     regions
         The region of each place, uint8 below 40.

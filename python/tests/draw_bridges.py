@@ -1,4 +1,4 @@
-"""Draws the sheet of docs/python.md: a body as trimesh, PyVista and Open3D show it, without a window.
+"""Draws the sheet of docs/python_packages.md: a body as trimesh, PyVista and Open3D show it, without a window.
 
 draw_bridges.py RECIPE.json SHEET.jpg [RESOLUTION]
 

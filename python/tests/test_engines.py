@@ -172,7 +172,7 @@ def test_usd_has_the_colours_of_vertices(tmp_path):
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/body/mesh"))
     colors = np.array(mesh.GetDisplayColorPrimvar().Get())
     assert colors.shape == np.array(mesh.GetPointsAttr().Get()).shape
-    light = 0.36 * (0.05 / 0.1) ** (1 / 3)  # for viewing (docs/recipe.md)
+    light = 0.36 * (0.05 / 0.1) ** (1 / 3)  # for viewing (docs/recipe.md#albedo)
     assert np.median(colors, axis=0) == pytest.approx([1.1 * light, light, 0.9 * light], rel=0.02)
     shader = stage.GetPrimAtPath("/body/regolith/vertices")
     assert shader.GetAttribute("inputs:varname").Get() == "displayColor"

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md, run one after another in one folder."""
+"""The examples of docs/python.md and docs/python_packages.md, run one after another in one folder."""
 
 import itertools
 import pathlib
@@ -8,12 +8,14 @@ import astrolith
 import numpy as np
 import pytest
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md"
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
+PAGES = [DOCS / "python.md", DOCS / "python_packages.md"]
 
 
 def blocks():
-    """The page's Python blocks, but for those of packages that are not installed with the tests."""
-    return [code for mark, code in re.findall(r"(<!-- not run.*?-->\n)?```python\n(.*?)```", PAGE.read_text(), re.DOTALL) if not mark]
+    """The Python blocks of both pages, but for those of packages that are not installed with the tests."""
+    text = "\n".join(page.read_text() for page in PAGES)
+    return [code for mark, code in re.findall(r"(<!-- not run.*?-->\n)?```python\n(.*?)```", text, re.DOTALL) if not mark]
 
 
 def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
@@ -33,7 +35,7 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
         for large, small in (("triangles=1e6", "triangles=2e4"), ('unit="km")', 'unit="km", spheres=8, points=1000, base_only=True)'),
                              ("resolution=1024", "resolution=48"), ("views=[(1, 0, 0)])", "views=[(1, 0, 0)], width=64, height=48)")):  # fmt: skip
             code = code.replace(large, small)
-        exec(compile(code, str(PAGE), "exec"), names)
+        exec(compile(code, "docs/python*.md", "exec"), names)
     said = capsys.readouterr().out
     assert "True" in said and "(2048, 3)" in said and "Itokawa.bds" in said
     assert {"itokawa.json", "itokawa.glb", "site.tif", "Itokawa.tpc"} <= {path.name for path in tmp_path.iterdir()}
@@ -41,7 +43,7 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
 
 def table_of(page, heading):
     """The rows below a heading of a table, as lists of cells."""
-    lines = (PAGE.parent / page).read_text().split("\n")
+    lines = (DOCS / page).read_text().split("\n")
     start = next(i for i, line in enumerate(lines) if line.startswith(heading))
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in itertools.takewhile(lambda s: s.startswith("|"), lines[start + 2:])]
 

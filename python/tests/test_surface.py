@@ -88,7 +88,7 @@ def test_what_cannot_be_measured_is_refused():
 def test_the_document_explains_every_statistic():
     made = astrolith.describe_surface(sphere(noise=0.01), places=200)
     names = list(dict.fromkeys(name.split("_")[0] for name in made.values))
-    page = (ROOT / "docs" / "descriptor.md").read_text()
+    page = (ROOT / "docs" / "surfaces.md").read_text()
     explained = re.findall(r"^\| ([a-z ]+) \|", page.split("| statistic | equation |")[1], re.MULTILINE)
     assert explained[: len(names)] == names
 

@@ -34,7 +34,8 @@ def test_mypy_finds_nothing(tmp_path):
 
 def test_mypy_finds_nothing_in_the_examples_of_the_page(tmp_path):
     others = "import open3d  # type: ignore\nimport torch  # type: ignore\nimport tqdm  # type: ignore\n"
-    code = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
+    pages = "\n".join((ROOT / "docs" / page).read_text() for page in ("python.md", "python_packages.md"))
+    code = re.findall(r"```python\n(.*?)```", pages, re.DOTALL)
     (tmp_path / "page.py").write_text(others + "\n".join(code))
     mypy(tmp_path, "--no-warn-unused-ignores", "page.py")
 

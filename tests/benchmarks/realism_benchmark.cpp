@@ -1,5 +1,5 @@
 // Measures the power and the size of the test of realism (descriptor/surface/realism.h). Prints tables in
-// Markdown (docs/descriptor.md).
+// Markdown (docs/surfaces.md).
 //
 //   realism_benchmark --seeds 3 MESH...                          # which impostors of a body it rejects
 //   realism_benchmark --facets 1500 3000 6000 --seeds 2 MESH...  # from how many facets on it has power

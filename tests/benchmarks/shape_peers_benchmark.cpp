@@ -1,6 +1,6 @@
 // Compares the base fit with spherical harmonics and with a decimated mesh of as many bytes: distances at
 // fresh samples of both surfaces, in percent of the bounding-box diagonal, as a table in Markdown
-// (docs/accuracy.md).
+// (docs/accuracy_shapes.md).
 //
 //   shape_peers_benchmark --spheres 200 --degree 27 MESH...
 //

@@ -5,7 +5,7 @@
 
 namespace {
 
-// CRC-16 with the polynomial 0x1021, as docs/recipe.md states for compact recipes.
+// CRC-16 with the polynomial 0x1021, as docs/recipe_compact.md states for compact recipes.
 unsigned checksum(const std::uint8_t* data, std::size_t size) {
   unsigned check = 0xffff;
   for (std::size_t i = 0; i < size; ++i) {

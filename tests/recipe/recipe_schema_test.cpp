@@ -250,8 +250,8 @@ TEST_F(RecipeFields, SchemaStatesTheSameLimits) {
   EXPECT_GT(compared, 100);
 }
 
-// The example in docs/recipe.md is a recipe, and the schema's defaults are the reader's. Another test
-// compares the document's tables with the schema (scripts/docs.py).
+// The examples in docs/ are recipes, and the schema's defaults are the reader's. Another test compares
+// the document's tables with the schema (scripts/docs.py).
 
 std::string read_schema_text(const char* file) {
   std::ostringstream text;
@@ -291,9 +291,14 @@ int expect_defaults(const nlohmann::json& definition, const nlohmann::json& writ
   return compared;
 }
 
-TEST(RecipeReference, ExampleIsARecipe) {
+TEST(RecipeReference, ExamplesAreRecipes) {
+  const std::string docs = ASTROLITH_RECIPE_REFERENCE;
+  const Recipe short_one =
+      parse_recipe(first_json_block(read_schema_text((docs + "/recipe.md").c_str())), "docs/recipe.md");
+  ASSERT_TRUE(short_one.body.has_value());
+  EXPECT_EQ(short_one.layers.size(), 1u);
   const Recipe recipe =
-      parse_recipe(first_json_block(read_schema_text(ASTROLITH_RECIPE_REFERENCE)), "docs/recipe.md");
+      parse_recipe(read_schema_text((docs + "/recipe_example.json").c_str()), "recipe_example.json");
   ASSERT_TRUE(recipe.body.has_value());
   EXPECT_EQ(recipe.body->spheres.size(), 2u);
   EXPECT_GE(recipe.layers.size(), 5u);
@@ -301,8 +306,8 @@ TEST(RecipeReference, ExampleIsARecipe) {
 
 TEST(RecipeReference, ExampleHasEveryField) {
   // The writer writes all fields, so the example must hold all fields in the writer's order.
-  const std::string example = first_json_block(read_schema_text(ASTROLITH_RECIPE_REFERENCE));
-  EXPECT_EQ(recipe_to_json(parse_recipe(example, "docs/recipe.md")), example);
+  const std::string example = read_schema_text(ASTROLITH_RECIPE_REFERENCE "/recipe_example.json");
+  EXPECT_EQ(recipe_to_json(parse_recipe(example, "recipe_example.json")), example);
 }
 
 TEST(RecipeReference, DefaultsAreTheReaders) {

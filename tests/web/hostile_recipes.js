@@ -7,7 +7,7 @@ const ROOT = path.join(__dirname, "../..");
 const EXAMPLES = path.join(ROOT, "synthesis/examples");
 const STREAMS = path.join(ROOT, "tests/fuzz/seeds/compact_recipe");
 
-// CRC-16 with the polynomial 0x1021, as docs/recipe.md states for compact recipes.
+// CRC-16 with the polynomial 0x1021, as docs/recipe_compact.md states for compact recipes.
 function check(bytes) {
   let sum = 0xffff;
   for (const byte of bytes) {
