@@ -12,7 +12,7 @@ fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev li
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of
 # sanitized builds, --package what makes a Debian package, --python what builds the Python package, --browser what opens the
 # pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, --engines what tests
-# of assets load them in, and --notebooks the packages of the notebooks.
+# of assets load them in, --site what builds the site of the documents, and --notebooks the packages of the notebooks.
 for option in "$@"; do
   case $option in
     --synth) fitting=() ;;
@@ -25,6 +25,7 @@ for option in "$@"; do
     --engines) packages+=(blender godot3-server) ;;
     --web) packages+=(emscripten nodejs libjs-three) ;;
     --python) packages+=(python3-dev python3-venv) ;;
+    --site) packages+=(doxygen libjs-katex python3-venv git) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
     *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;
   esac

@@ -101,6 +101,7 @@ class Gravity:
 
 
 def is_recipe(body: Any) -> bool:
+    """Whether a body is a recipe: a mapping, or a file or a name of the library that has one."""
     if not _arrays.is_file_name(body):
         return isinstance(body, Mapping)
     file = _synthesis.find_body(_arrays.file_name(body, "body"))

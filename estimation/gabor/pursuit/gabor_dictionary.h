@@ -80,8 +80,8 @@ class GaborDictionary {
   mutable std::vector<double> grid_;
 };
 
-// One axis of a lobe on a grid of n bins: sum_k exp(-((i - center + k n) / deviation)^2 / 2) for i = 0 ..
-// n-1. `center` and `deviation` are in bins.
+// One axis of a lobe on a grid of n bins: sum_k exp(-((i - center + k n) / deviation)^2 / 2) for i from 0 to
+// n - 1. `center` and `deviation` are in bins.
 std::vector<double> periodic_gaussian(int n, double center, double deviation);
 
 // The narrowest bandwidth that the paper fits on a width x height grid: floor(log2(diagonal)), at most 12.

@@ -163,6 +163,7 @@ def convex_parts(
 
 
 def in_metres(mesh: MeshLike, unit: str) -> Mesh:
+    """The mesh with its vertices in metres."""
     arrays = arrays_of(mesh, "mesh")
     return Mesh(arrays.vertices * METRES[unit], arrays.faces, arrays.normals, length_unit="m")
 
