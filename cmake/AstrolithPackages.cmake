@@ -18,11 +18,17 @@ find_package(ZLIB REQUIRED)                # meshes in .gz
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # NPZ
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)  # PNG
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # text and lines of pictures
+if(CAIRO_LINK_LIBRARIES MATCHES "[.]a$")  # scripts/wheel_packages.sh
+  target_link_libraries(PkgConfig::CAIRO INTERFACE ${CAIRO_STATIC_LDFLAGS})
+endif()
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
   find_package(OpenCV REQUIRED COMPONENTS core ml)  # random forests
-  pkg_check_modules(GDAL REQUIRED IMPORTED_TARGET gdal)  # rasters in
+  option(ASTROLITH_GDAL "Read photos and rasters by GDAL; without it PNG alone" ON)
+  if(ASTROLITH_GDAL)
+    pkg_check_modules(GDAL REQUIRED IMPORTED_TARGET gdal)  # rasters in
+  endif()
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(CGAL REQUIRED)              # repair of meshes
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
@@ -48,9 +54,9 @@ function(astrolith_cuda_architectures result)
   set(${result} "${capabilities}" PARENT_SCOPE)
 endfunction()
 
-# The GPU code is built where a CUDA compiler is found. No program needs it. Sanitizers do not see GPU code, so their
-# builds leave it out.
-option(ASTROLITH_CUDA "Build the GPU code where a CUDA compiler is found" ON)
+# The GPU code takes three processor minutes and is built where it is asked for; scripts/build.sh asks where there is a GPU.
+# No program needs it. Sanitizers do not see GPU code, so their builds leave it out.
+option(ASTROLITH_CUDA "Build the GPU code where a CUDA compiler is found" OFF)
 if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE)
   include(CheckLanguage)
   check_language(CUDA)
@@ -69,7 +75,7 @@ if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE AND CMAKE_CUDA_COMPILER)
   set(ASTROLITH_HAS_CUDA ON)
   message(STATUS "GPU code: built by ${CMAKE_CUDA_COMPILER} for ${CMAKE_CUDA_ARCHITECTURES}")
 else()
-  message(STATUS "GPU code: left out, because no CUDA compiler was found, or ASTROLITH_CUDA is OFF, or ASTROLITH_SANITIZE is set")
+  message(STATUS "GPU code: left out, because ASTROLITH_CUDA is OFF, or ASTROLITH_SANITIZE is set, or no CUDA compiler was found")
 endif()
 
 if(ASTROLITH_TESTS)

@@ -7,7 +7,9 @@ cd "$(dirname "$0")/.."
 
 preset=$1
 shift
-settings=()
+# The GPU code is built where a GPU is, unless a setting says otherwise.
+settings=(-DASTROLITH_CUDA=OFF)
+nvidia-smi -L >/dev/null 2>&1 && settings=(-DASTROLITH_CUDA=ON)
 while [[ ${1:-} == -D* ]]; do
   settings+=("$1")
   shift

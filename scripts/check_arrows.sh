@@ -38,7 +38,7 @@ cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics
 estimation/page            -> numerics geometry synthesis/picture
 estimation/gabor           -> numerics recipe geometry synthesis/gabor synthesis/picture estimation/page estimation/gabor
-estimation/gabor/image     -> numerics
+estimation/gabor/image     -> numerics synthesis/picture
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
 estimation/gabor/exemplar  -> numerics recipe synthesis/exemplar estimation/gabor/image estimation/gabor/spectrum
 estimation/gabor/pursuit   -> numerics recipe estimation/gabor/spectrum

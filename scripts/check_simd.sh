@@ -8,7 +8,7 @@ resolution=${1:-40}
 levels=(scalar x86-64-v3 ordinary)
 command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 for level in "${levels[@]}"; do
-  cmake --preset synth-only -B "build/simd/$level" -DASTROLITH_SIMD="${level#ordinary}" -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF >/dev/null
+  cmake --preset synth-only -B "build/simd/$level" -DASTROLITH_SIMD="${level#ordinary}" -DASTROLITH_TESTS=OFF >/dev/null
   cmake --build "build/simd/$level" --target synth -- -j2 >/dev/null
 done
 grep -o -m1 avx512vl /proc/cpuinfo || echo "no AVX-512 here: it is not compared"

@@ -11,7 +11,7 @@ seconds=${1:?fuzz.sh: give the seconds for each reader}
 readers=("${@:2}")
 corpus=${FUZZ_CORPUS:-$PWD/build/fuzz/corpus}
 scripts/setup.sh --fuzz
-scripts/build.sh fuzz -DASTROLITH_CUDA=OFF fuzzers
+scripts/build.sh fuzz fuzzers
 [[ ${#readers[@]} -gt 0 ]] || readers=($(cd build/fuzz/tests/fuzz && ls fuzz_* | sed s/fuzz_//))
 
 # seeds_of READER: the folders of its first files

@@ -13,7 +13,7 @@ sinks=$build/tests/benchmarks/sinks_benchmark
 
 pack_binaries() {
   command -v "${CUDACXX:-nvcc}" >/dev/null || { echo "gpu.sh: nvcc is missing; install CUDA's compiler, put it on the PATH" >&2; exit 1; }
-  scripts/build.sh synth-only -DASTROLITH_BENCHMARKS=ON synth describe cuda_tests sinks_benchmark
+  scripts/build.sh synth-only -DASTROLITH_CUDA=ON -DASTROLITH_BENCHMARKS=ON synth describe cuda_tests sinks_benchmark
   local pack program
   pack=$(mktemp -d)
   trap "rm -rf '$pack'" EXIT  # expanded now: the function's variable is gone at exit

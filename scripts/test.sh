@@ -17,7 +17,7 @@ preset=${1:-release}
 scripts/setup.sh --python
 [[ $preset == asan || $preset == tsan ]] && scripts/setup.sh --sanitizers
 scripts/fetch_data.sh
-settings=(-DASTROLITH_CUDA=ON -DASTROLITH_PYTHON=OFF)
+settings=(-DASTROLITH_PYTHON=OFF)
 # An interpreter without a sanitizer does not load a module with one.
 if [[ $preset != asan && $preset != tsan ]] && scripts/python_venv.sh; then
   settings+=(-DASTROLITH_PYTHON=ON -DPython_EXECUTABLE="$PWD/build/python-venv/bin/python")

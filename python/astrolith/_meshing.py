@@ -26,7 +26,7 @@ def call(work: Any, name: str, recipe: RecipeLike, options: dict[str, Any], thre
         given.append(("recipe", [_arrays.file_name(recipe, "recipe")]))
     else:
         text = json_of(recipe)[0]
-    return work(given, text, [sys.prefix, "/usr/local", "/usr"], _options.threads(threads), progress)
+    return work(given, text, [os.path.dirname(__file__), sys.prefix, "/usr/local", "/usr"], _options.threads(threads), progress)
 
 
 def _made(fields: dict[str, Any]) -> Mesh:

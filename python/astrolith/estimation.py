@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, Optional, Union, cast
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _arrays, _estimation, _jobs, _options
+try:
+    from astrolith import _estimation
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError("astrolith: the fits are not installed; pip install 'astrolith[fit]'", name=error.name) from None
+from astrolith import _arrays, _jobs, _options
 from astrolith._classes import classify, train_classifier
 from astrolith._mesh import Arrays, Mesh, MeshLike, arrays_of, stated_unit
 from astrolith._options import Progress

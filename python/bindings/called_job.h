@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "numerics/errors.h"
 #include "python/bindings/job.h"
 #include "tasks/job/job.h"
 

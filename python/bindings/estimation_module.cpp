@@ -91,6 +91,7 @@ NB_MODULE(_estimation, module) {
   using namespace astrolith::python;
   namespace nb = nanobind;
   declare_common(module);
+  declare_programs(module);
   declare_fits(module);
   module.def("repair_mesh", &repair_in_job, nb::arg("name"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("fill_unseen"), nb::arg("unite"),

@@ -75,4 +75,8 @@ std::string python_words(std::string message);
 // Declares what all modules of the package have: exceptions, and the wait at the interpreter's end.
 void declare_common(nanobind::module_& module);
 
+// Declares run_program(words), which does what main() of the program words[0] does, and programs(), the
+// names. Each module has its own list of programs (programs.cpp.in).
+void declare_programs(nanobind::module_& module);
+
 }  // namespace astrolith::python

@@ -318,6 +318,7 @@ void bind_products(nb::module_& module) {
 NB_MODULE(_synthesis, module) {
   using namespace astrolith::python;
   declare_common(module);
+  declare_programs(module);
   bind_recipes(module);
   bind_field(module);
   bind_meshes(module);
