@@ -23,7 +23,7 @@ for option in "$@"; do
     --sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
     --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
     --engines) packages+=(blender godot3-server) ;;
-    --web) packages+=(emscripten nodejs libjs-three) ;;
+    --web) packages+=(emscripten nodejs) ;;
     --python) packages+=(python3-dev python3-venv) ;;
     --site) packages+=(doxygen libjs-katex python3-venv git) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;

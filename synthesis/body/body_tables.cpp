@@ -40,10 +40,17 @@ double operator_slope(const OperatorParameters<double>& o) {
   }
 }
 
+// The grid of a morph, with its coefficients outside of any store.
+struct KeptGrid {
+  SplineGrid grid;
+  std::vector<float> coefficients;
+};
+
 // Builds the leaves and steps of a body and its operands in the order of the recipe.
 class BodyBuilder {
  public:
-  BodyBuilder(std::uint64_t seed, ArrayStore& arrays) : seed_(seed), arrays_(arrays) {}
+  BodyBuilder(std::uint64_t seed, ArrayStore& arrays, std::vector<KeptGrid>* kept)
+      : seed_(seed), arrays_(arrays), kept_(kept) {}
 
   BodyTables build(const MetaballBody& body) {
     const Part whole = add(body);
@@ -95,14 +102,32 @@ class BodyBuilder {
   Part add_grid(const Morph& morph) {
     BodyLeaf leaf;
     leaf.metaballs.gradient_floor = 1e-8f;  // gradients of grids have unit length
-    leaf.grid = make_morph_grid(morph, arrays_);
+    leaf.grid = grid_of(morph);
     leaves_.push_back(leaf);
     const auto& [low, high] = std::pair(leaf.grid.low, leaf.grid.high);
     return {{{low.x, low.y, low.z}, {high.x, high.y, high.z}}, 1.0};
   }
 
+  // The next grid that is kept, or a new one.
+  SplineGrid grid_of(const Morph& morph) {
+    const std::size_t number = grids_++;
+    if (kept_ != nullptr && number < kept_->size()) {
+      SplineGrid grid = (*kept_)[number].grid;
+      grid.coefficients = arrays_.add((*kept_)[number].coefficients);
+      return grid;
+    }
+    const SplineGrid grid = make_morph_grid(morph, arrays_);
+    if (kept_ != nullptr) {
+      const std::span<const float> made = arrays_.view().span(grid.coefficients);
+      kept_->push_back({grid, {made.begin(), made.end()}});
+    }
+    return grid;
+  }
+
   std::uint64_t seed_;
   ArrayStore& arrays_;
+  std::vector<KeptGrid>* kept_;  // those of the body's morphs in their order; none where null
+  std::size_t grids_ = 0;
   std::vector<BodyLeaf> leaves_;
   std::vector<BodyStep> steps_;
   Box plain_supports_;
@@ -191,8 +216,12 @@ void combine(const OperatorParameters<float>& o, int n, Columns& body, Columns& 
 
 }  // namespace
 
-BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays) {
-  return BodyBuilder(seed, arrays).build(body);
+BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays,
+                     std::shared_ptr<void>* kept) {
+  using KeptGrids = std::vector<KeptGrid>;
+  if (kept != nullptr && *kept == nullptr) *kept = std::make_shared<KeptGrids>();
+  return BodyBuilder(seed, arrays, kept == nullptr ? nullptr : static_cast<KeptGrids*>(kept->get()))
+      .build(body);
 }
 
 ReachingMetaballs all_metaballs(const BodyTables& body, const ArrayView& arrays) {

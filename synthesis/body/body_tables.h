@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "numerics/arrays.h"
 #include "recipe/recipe.h"
@@ -45,8 +46,11 @@ struct BodyTables {
   ASTROLITH_HD bool plain() const { return steps.count == 0; }
 };
 
-// The tables of a body. `seed` is the seed of the recipe. Expects a body that validation accepts.
-BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays);
+// The tables of a body. `seed` is the seed of the recipe. Expects a body that validation accepts. `kept`,
+// where it is given, holds the grids of the body's morphs from one call to the next; all calls have the same
+// body.
+BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays,
+                     std::shared_ptr<void>* kept = nullptr);
 
 // A box that holds the points at which the body is evaluated for the points of `box`: their warped images if
 // the body is plain and warped, else the points themselves.

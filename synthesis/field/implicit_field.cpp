@@ -125,7 +125,7 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
   auto model = std::make_shared<FieldModel>();
   model->patch = patch;
   if (like != nullptr) model->shared = like->model_->shared;
-  model->body = make_body(*recipe.body, recipe.seed, model->arrays);
+  model->body = make_body(*recipe.body, recipe.seed, model->arrays, &(*model->shared)["body"]);
   model->update();
   model->metaballs = all_metaballs(model->body, model->tables.arrays);
   add_layers(recipe, name, *model, progress);

@@ -160,8 +160,8 @@ class ImplicitField {
   // has them within the cube, if the body has_local_form(). Blocks of such a field must lie in the cube or
   // within its side of it. The functions that take points of the body's frame never have the fine layers.
   //
-  // `like` is a field of the same body, seed and relief layers, whose laid heights are taken: they are most
-  // of the work on a large relief.
+  // `like` is a field of the same body, seed and relief layers in the same places, whose laid heights and
+  // grids of morphs are taken: they are most of the work on a large relief, or on a morph.
   explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe",
                          const std::optional<PatchCube>& patch = {}, const Progress& progress = {},
                          const ImplicitField* like = nullptr);

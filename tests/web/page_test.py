@@ -90,8 +90,16 @@ class Page:
     def recipe(self):
         return json.loads(self.script("return window.astrolith.recipeText()"))
 
+    def show_tab(self, name):
+        self.script("document.getElementById(arguments[0]).click()", f"tab-{name}")
+
+    def set_value(self, element, value):
+        self.script("const [id, value] = arguments, e = document.getElementById(id); e.value = value;"
+                    "e.dispatchEvent(new Event('input', {bubbles: true})); e.dispatchEvent(new Event('change', {bubbles: true}))",
+                    element, value)  # fmt: skip
+
     def input(self, label, kind="range"):
-        """The control of a field in the form, whose groups are opened on the way."""
+        """The control of a field in the form of all fields."""
         element = f'#form input[type="{kind}"][aria-label="{label}"]'
         return self.driver.find_element(By.CSS_SELECTOR, element)
 
@@ -131,6 +139,7 @@ def example(name):
 
 
 def check_slider(page, synth):
+    page.show_tab("fields")
     page.open(example("fractal_hills.json"), "fractal_hills.json")
     page.set_cells(CELLS)
     before = page.mesh_hash()
@@ -149,24 +158,74 @@ def check_slider(page, synth):
     check(page.mesh_hash() == before, "undo does not bring the mesh back")
 
 
+def check_wall(page):
+    """The page opens on bodies, each of which is one press away."""
+    check(page.script("return document.body.dataset.shows") == "wall", "the page does not open on the wall")
+    bodies = page.driver.find_elements(By.CSS_SELECTOR, ".bodies button")
+    check(len(bodies) == 20, f"{len(bodies)} bodies are on the wall")
+    bodies[0].click()
+    page.wait(lambda: "triangles" in page.script("return document.getElementById('figures').textContent"))
+    page.settled()
+    check(page.recipe()["description"].startswith("25143 Itokawa"), "the first body of the wall is not Itokawa")
+
+
 def check_library(page, synth):
-    """A measured body of the list is the one of synth's library."""
-    page.script("const list = document.getElementById('examples'); list.value = 'ky26.json'; list.dispatchEvent(new Event('change'))")
+    """A measured body of the list is the one of synth's library, and so is the command for the desktop."""
+    page.set_value("examples", "ky26")
     page.wait(lambda: page.recipe().get("description", "").startswith("1998 KY26"))
     page.set_cells(CELLS)
     check(page.mesh_hash() == synth.run((ROOT / "library/ky26.astro").read_bytes(), "ky26.astro")[0], "the body is not synth's")
+    page.show_tab("save")
+    page.wait(lambda: page.text("command") == f"synth ky26 -o ky26.glb --resolution {CELLS}", 5)
+
+
+def check_command(page, synth):
+    """The command of a body that the library has not makes the page's mesh."""
+    page.show_tab("save")
+    page.wait(lambda: "base64 -d" in page.text("command"), 10)
+    with tempfile.TemporaryDirectory() as folder:
+        command = page.text("command").replace("\nsynth ", f"\n{synth.program} --quiet ").replace(".glb", ".ply")
+        subprocess.run(["bash", "-c", command], cwd=folder, check=True)
+        mesh = next(pathlib.Path(folder).glob("*.ply"))
+        check(hashlib.sha256(mesh.read_bytes()).hexdigest() == page.mesh_hash(), "the command makes another mesh")
+
+
+def check_knobs(page, synth):
+    """A knob moves the recipe, its mesh is synth's, and undo takes it back at once."""
+    page.open(example("fractal_hills.json"), "fractal_hills.json")
+    page.set_cells(32)
+    before = page.recipe()
+    for knob, value in (("craters", 100), ("boulders", 80), ("size", 120), ("lobes", 1)):
+        page.set_value(f"knob-{knob}", value)
+    page.settled()
+    made = page.recipe()
+    check([layer["type"] for layer in made["layers"][-2:]] == ["craters", "boulders"], "the knobs add no landforms")
+    check(page.mesh_hash() == synth.run(page.script("return window.astrolith.recipeText()"), "fractal_hills.json", 32)[0], "the knobs' mesh is not synth's")
+    check_command(page, synth)
+    for _ in range(4):
+        page.driver.find_element(By.ID, "undo").click()
+    page.settled()
+    check(page.recipe() == before, "undo does not take the knobs back")
+
+
+def check_values(page):
+    """Slopes, heights, albedo and layers are shown as colours."""
+    for values in ("slope", "height", "label"):
+        page.set_value("values", values)
+        page.settled()
+        check(page.text("refusal") == "", f"{values}: {page.text('refusal')}")
+    page.set_value("values", "")
+    page.settled()
 
 
 def check_draw(page, synth):
     """A body that is drawn on the page is the one that synth draws; each press takes the next seed."""
-    page.script("document.getElementById('draw-class').value = 'top'")
-    page.driver.find_element(By.ID, "draw-diameter").send_keys("330")
-    seed = page.driver.find_element(By.ID, "draw-seed")
+    page.show_tab("knobs")
+    page.script("document.querySelector('.more').open = true")
+    for element, value in (("draw-class", "top"), ("draw-diameter", 330), ("draw-seed", 7), ("draw-ground", "measured")):
+        page.set_value(element, value)
     button = page.driver.find_element(By.CSS_SELECTOR, "#draw button")
     button.click()
-    page.wait(lambda: page.recipe().get("seed") == 1, 120)
-    seed.clear()
-    seed.send_keys("7" + Keys.ENTER)
     page.wait(lambda: page.recipe().get("seed") == 7, 120)
     words = page.text("drawn")
     check(words.startswith(page.recipe()["description"]) and "diameter 330 m" in words, f"the page says of its body {words!r}")
@@ -175,21 +234,31 @@ def check_draw(page, synth):
     mesh, recipe = synth.draw(7, "--class", "top", "--diameter", "330")
     check(page.recipe_hash() == recipe, "the drawn recipe is not synth's")
     check(page.mesh_hash() == mesh, "the drawn mesh is not synth's")
+    page.set_value("draw-ground", "knobs")
+    button.click()
+    page.wait(lambda: page.recipe().get("seed") == 8, 120)
+    page.settled()
+    layers = [layer["type"] for layer in page.recipe()["layers"]]
+    check(layers == ["simplex", "craters", "boulders"], f"a new asteroid has the layers {layers}")
+    text = page.script("return window.astrolith.recipeText()")
+    check(page.mesh_hash() == synth.run(text, "asteroid_8.json")[0], "the new asteroid's mesh is not synth's")
     before = page.recipe()
-    page.driver.find_element(By.ID, "draw-b").send_keys("0.9")
+    page.set_value("draw-b", 0.9)
     button.click()
     page.wait(lambda: "population.draw.axes: give b/a and c/a" in page.text("refusal"))
-    page.driver.find_element(By.ID, "draw-c").send_keys("0.1")
+    page.set_value("draw-c", 0.1)
     button.click()
     page.wait(lambda: "asteroids: population.draw.axes: have a ratio of 10;" in page.text("refusal"), 120)
     check(page.recipe() == before, "a draw that is refused replaces the recipe")
-    check(seed.get_attribute("value") == "8", f"of two refusals, one by the core, the seed became {seed.get_attribute('value')}")
     page.open(example("fractal_hills.json"), "fractal_hills.json")
     check(page.text("drawn") == "", "the words about a drawn body stay with another")
+    page.set_value("draw-b", "")
+    page.set_value("draw-c", "")
 
 
 def check_layers(page):
     """A layer is added by the keyboard, switched off and removed."""
+    page.show_tab("fields")
     count = len(page.recipe()["layers"])
     choice = page.driver.find_element(By.CSS_SELECTOR, '#form select[aria-label="kind to add to layers"]')
     choice.send_keys("worley")
@@ -251,7 +320,9 @@ def check_damaged_link(driver, address):
         driver.get("about:blank")
         page = Page(driver, f"{address}#r={code}")
         page.settled()
-        check("triangles" in page.text("figures") and page.text("refusal") != "", f"a link with {code} leaves a dead page")
+        page.wait(lambda: page.text("refusal") != "", 20)
+        page.driver.find_element(By.CSS_SELECTOR, ".bodies button").click()
+        page.wait(lambda: "triangles" in page.text("figures"), 60)
 
 
 def check_link(page, address):
@@ -278,6 +349,31 @@ def check_own_page(driver, synth, file):
         check(page.recipe()["seed"] == 7, "a page of synth opens another recipe")
 
 
+def check_reload(page):
+    """What was edited is there again when the page is loaded anew."""
+    page.open(example("kernels.json"), "kernels.json")
+    page.set_cells(32)
+    page.set_value("knob-craters", 90)
+    page.settled()
+    before = page.recipe()
+    time.sleep(0.5)
+    page.driver.refresh()
+    page.wait(lambda: page.script("return window.astrolith && window.astrolith.recipeText() !== null"), 20)
+    check(page.recipe() == before, "edits vanish when the page is loaded anew")
+
+
+def check_mesh_beside(page, synth):
+    """A mesh is shown beside the body, with the command that fits it."""
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = pathlib.Path(folder) / "rock.ply"
+        subprocess.run([synth.program, str(ROOT / "synthesis/examples/kernels.json"), "-o", mesh, "--resolution", "24", "--quiet"], check=True)
+        page.driver.find_element(By.ID, "file").send_keys(str(mesh))
+        page.wait(lambda: "fit_shape rock.ply -o rock.json" in page.text("beside"), 20)
+    check(page.text("refusal") == "", f"a mesh is refused: {page.text('refusal')!r}")
+    page.script("[...document.querySelectorAll('#beside button')].at(-1).click()")
+    check(page.text("beside") == "", "the mesh beside stays")
+
+
 def check_quiet(driver):
     errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
     check(not errors, f"the browser says: {errors}")
@@ -289,7 +385,7 @@ def check_phone(address):
     driver = browser(500, 900)
     try:
         page = Page(driver, address)
-        page.settled()
+        check_wall(page)
         check(page.script("return document.documentElement.scrollWidth <= innerWidth"), "the page is wider than a phone")
         check_quiet(driver)
     finally:
@@ -305,23 +401,26 @@ def main():
     driver = browser()
     try:
         page = Page(driver, address)
-        page.settled()
-        check("triangles" in page.text("figures"), f"no body after the start: {page.text('figures')!r}")
+        check_wall(page)
         check_slider(page, synth)
         check_library(page, synth)
+        check_knobs(page, synth)
+        check_values(page)
+        check_mesh_beside(page, synth)
         check_draw(page, synth)
         check_layers(page)
         check_refusal(page, synth)
         check_bad_files(page, synth)
         check_two_files(page)
         check_link(page, address)
+        check_reload(page)
         check_damaged_link(driver, address)
         check_own_page(driver, synth, file)
         check_quiet(driver)
     finally:
         driver.quit()
     check_phone(address)
-    print("page: slider, measured bodies, draws, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
+    print("page: wall, knobs, slider, values, measured bodies, draws, layers, undo, refusals and links work, meshes are synth's, no errors, no network")
     return 0
 
 

@@ -20,6 +20,7 @@
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/finish/population_draw.h"
 #include "tasks/synth/body_mesh.h"
+#include "web/core/surface_values.h"
 
 namespace astrolith {
 namespace {
@@ -49,22 +50,59 @@ Recipe body_recipe_in(std::string_view bytes, const std::string& name) {
   return recipe;
 }
 
-// The body that is meshed. Its field is kept for meshes of other resolutions, since morphs and reliefs take
-// seconds.
+// The pixels of a recipe's reliefs, and as text all else that decides the work which ImplicitField takes from
+// a field that is `like` it.
+struct FieldWork {
+  explicit FieldWork(const Recipe& recipe) {
+    Recipe part;
+    part.length_unit = recipe.length_unit;
+    part.seed = recipe.seed;
+    part.body = recipe.body;
+    for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+      const auto* const relief = std::get_if<ReliefLayer>(&recipe.layers[i]);
+      if (relief == nullptr) continue;
+      pixels.push_back(relief->pixels);
+      ReliefLayer without = *relief;
+      static_cast<NamedImage&>(without) = {"relief", std::string(64, '0'), nullptr};
+      part.layers.push_back(without);
+      text += std::to_string(i) + " ";
+    }
+    text += recipe_to_json(part);
+  }
+  bool operator==(const FieldWork& other) const {
+    return text == other.text && std::equal(pixels.begin(), pixels.end(), other.pixels.begin(),
+                                            other.pixels.end(), [](const auto& a, const auto& b) {
+                                              return a == b || (a && b && a->values == b->values);
+                                            });
+  }
+
+  std::string text;
+  std::vector<std::shared_ptr<const ExemplarImage>> pixels;
+};
+
+// The body that is meshed. Its field is kept for meshes of other resolutions, and what reliefs and morphs
+// took seconds for is kept for the next recipe of the same body.
 struct MeshedBody {
-  MeshedBody(std::string_view bytes, const std::string& name)
+  MeshedBody(std::string_view bytes, const std::string& name, const MeshedBody* before)
       : text(bytes),
         file(name),
         recipe(body_recipe_in(bytes, name)),
-        part(make_body_part(spec, recipe, file, false, host_goes_on, {})) {}
+        work(recipe),
+        part{spec, recipe, file, {}, make_region_field(recipe, file, {}, host_goes_on, like(before)), 0} {}
   MeshedBody(const MeshedBody&) = delete;
   MeshedBody& operator=(const MeshedBody&) = delete;
 
   const std::string text;
   const std::filesystem::path file;
   const Recipe recipe;
+  const FieldWork work;
   const MeshSpec spec;
   const MeshPart part;  // refers to the others
+
+ private:
+  const ImplicitField* like(const MeshedBody* before) const {
+    return before != nullptr && before->file == file && before->work == work ? &before->part.field : nullptr;
+  }
 };
 
 // What the calls have made so far.
@@ -74,6 +112,7 @@ struct PageState {
   TriangleMesh mesh;
   MeshFileInfo info;
   std::vector<float> positions, normals;
+  SurfaceValues values;
   DrawnBody drawn;
   MeasuredBody ground;  // of the drawn body
 };
@@ -135,8 +174,7 @@ void make(std::string_view text, const std::string& name, int resolution) {
   PageState& to = state();
   to.mesh = {};
   if (to.body == nullptr || to.body->text != text || to.body->file != name) {
-    to.body.reset();
-    to.body = std::make_unique<MeshedBody>(text, name);
+    to.body = std::make_unique<MeshedBody>(text, name, to.body.get());
   }
   const Recipe& recipe = to.body->recipe;
   MeshPart part = to.body->part;
@@ -152,6 +190,14 @@ void make(std::string_view text, const std::string& name, int resolution) {
   to.positions = as_floats(mesh.vertices);
   to.normals = as_floats(mesh.normals);
   to.mesh = std::move(mesh);
+}
+
+void find_values(const std::string& what) {
+  PageState& to = state();
+  if (to.body == nullptr || to.mesh.vertices.empty()) throw InputError("values: there is no mesh; make one");
+  to.values =
+      find_surface_values(what, to.body->recipe, to.body->file.string(), to.body->part.field, to.mesh);
+  to.figures = nlohmann::ordered_json{{"unit", to.values.unit}, {"legend", to.values.legend}}.dump();
 }
 
 void keep_written(std::string bytes) {
@@ -217,6 +263,11 @@ const std::uint32_t* astrolith_triangles() {
 }
 std::size_t astrolith_vertex_count() { return state().mesh.vertices.size(); }
 std::size_t astrolith_triangle_count() { return state().mesh.triangles.size(); }
+
+int astrolith_find_values(const char* what) {
+  return astrolith::run_guarded([&] { astrolith::find_values(what); });
+}
+const float* astrolith_values() { return state().values.values.data(); }
 
 int astrolith_write_mesh(const char* format) {
   return astrolith::run_guarded([&] { astrolith::write_made_mesh(format); });

@@ -24,14 +24,18 @@ const char* astrolith_message(void);
 const char* astrolith_figures(void);
 
 // The vertices as they are written into files: positions (#V x 3, the recipe's unit), unit normals (#V x 3),
-// sRGB bytes
-// (#V x 3, or null), and the triangles (#F x 3).
+// sRGB bytes (#V x 3, or null), and the triangles (#F x 3).
 const float* astrolith_positions(void);
 const float* astrolith_normals(void);
 const std::uint8_t* astrolith_colors(void);
 const std::uint32_t* astrolith_triangles(void);
 std::size_t astrolith_vertex_count(void);
 std::size_t astrolith_triangle_count(void);
+
+// Finds a number at each vertex of the mesh: its "slope", "height", "albedo" or "label" (surface_values.h).
+// The figures are then its unit and, of labels, their words. Returns a status, as astrolith_make() does.
+int astrolith_find_values(const char* what);
+const float* astrolith_values(void);
 
 // The mesh as the bytes of a file: "ply", "glb", "obj" or "stl". Returns a status, as astrolith_make() does.
 int astrolith_write_mesh(const char* format);

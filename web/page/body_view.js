@@ -1,91 +1,201 @@
-// A body in the sun, which the mouse, a finger or the arrow keys turn.
-class BodyView {
+// Draws one or two bodies in the sun, with the shadows that they cast on themselves (WebGL 2). The camera goes around a body
+// at `longitude` and `latitude`, `distance` radii away; the sun has a longitude and a latitude, too. All angles are in degrees.
+import {matrices, vectors} from "./matrices.js";
+import {bodyShaders} from "./body_shaders.js";
+import {BodyBuffers} from "./body_buffers.js";
+
+export class BodyView {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
-    this.renderer.setClearColor(0x0d0f13);
-    this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.set(1.4, -2.9, 1.1);
-    this.material = new THREE.MeshStandardMaterial({color: 0xb9b2a8, roughness: 1, metalness: 0});
-    this.painted = new THREE.MeshStandardMaterial({vertexColors: THREE.VertexColors, roughness: 1, metalness: 0});
-    this.body = new THREE.Mesh(new THREE.BufferGeometry(), this.material);
-    this.sun = new THREE.DirectionalLight(0xffffff, 1.15);
-    this.scene.add(this.body, this.sun, new THREE.AmbientLight(0xffffff, 0.12));
-    this.controls = new THREE.OrbitControls(this.camera, canvas);
-    this.controls.enableKeys = false;
-    this.controls.enablePan = false;
-    this.controls.minDistance = 1.2;
-    this.controls.maxDistance = 12;
-    this.controls.addEventListener("change", () => this.draw());
-    canvas.addEventListener("keydown", event => this.key(event));
-    new ResizeObserver(() => this.draw()).observe(canvas);
-    this.setSun(-50, 25);
+    this.camera = {longitude: -62, latitude: 20, distance: 4.6};
+    this.sun = {longitude: -118, latitude: 24};
+    this.background = [0.027, 0.031, 0.040];
+    this.fill = 0.035;
+    this.bodies = [null, null];   // what is drawn, each {mesh, buffers}
+    this.overlaid = null;         // the share of the width that the first body has where both lie over each other
+    this.ondraw = () => {};
+    this.start();
+    canvas.addEventListener("webglcontextlost", event => { event.preventDefault(); this.lost = true; });
+    canvas.addEventListener("webglcontextrestored", () => this.restore());
+    new ResizeObserver(() => this.request()).observe(canvas);
   }
 
-  // Azimuth and height of the sun in degrees, in the body's frame.
-  setSun(azimuth, height) {
-    const [a, h] = [azimuth, height].map(degrees => degrees * Math.PI / 180);
-    this.sun.position.set(10 * Math.cos(h) * Math.cos(a), 10 * Math.cos(h) * Math.sin(a), 10 * Math.sin(h));
-    this.draw();
+  start() {
+    const gl = this.canvas.getContext("webgl2", {antialias: true, alpha: false, powerPreference: "high-performance"});
+    if (!gl) throw new Error("this browser has no WebGL 2");
+    this.gl = gl;
+    this.lost = false;
+    this.depth = this.program(bodyShaders.depthVertex, bodyShaders.depthFragment);
+    this.paint = this.program(bodyShaders.vertex, bodyShaders.fragment);
+    this.maps = [this.depthMap(), null];
+    this.scaleTexture = gl.createTexture();
+    this.setScale(new Uint8Array(4 * 256).fill(128));
+  }
+  restore() {
+    this.start();
+    this.bodies.forEach((body, at) => body && this.setBody(at, body.mesh, body.buffers.place));
+    if (this.scaleColors) this.setScale(this.scaleColors);
   }
 
-  // Shows a mesh of the core. The first one after refit() is put into the picture; later ones keep its scale.
-  show(mesh) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(mesh.positions, 3));
-    geometry.setAttribute("normal", new THREE.BufferAttribute(mesh.normals, 3));
-    if (mesh.colors) geometry.setAttribute("color", new THREE.BufferAttribute(mesh.colors, 3, true));
-    geometry.setIndex(new THREE.BufferAttribute(mesh.triangles, 1));
-    this.body.geometry.dispose();
-    this.body.geometry = geometry;
-    this.body.material = mesh.colors ? this.painted : this.material;
-    if (!this.fitted) this.fit(geometry);
-    this.draw();
-  }
-  refit() { this.fitted = false; }
-  fit(geometry) {
-    geometry.computeBoundingSphere();
-    const {center, radius} = geometry.boundingSphere;
-    this.body.scale.setScalar(0.8 / radius);
-    this.body.position.copy(center).multiplyScalar(-0.8 / radius);
-    this.fitted = true;
-  }
-
-  key(event) {
-    const turn = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-    const zoom = {"+": 0.9, "=": 0.9, "-": 1 / 0.9}[event.key];
-    if (!turn && !zoom) return;
-    event.preventDefault();
-    // The camera looks at 0, about which its place turns.
-    const {x, y, z} = this.camera.position;
-    const place = new THREE.Spherical().setFromVector3(new THREE.Vector3(x, z, -y));
-    if (turn) {
-      place.theta += 0.1 * turn[0];
-      place.phi = Math.min(Math.max(place.phi + 0.1 * turn[1], 0.05), Math.PI - 0.05);
-    } else {
-      place.radius = Math.min(Math.max(place.radius * zoom, this.controls.minDistance), this.controls.maxDistance);
+  program(vertex, fragment) {
+    const {gl} = this, program = gl.createProgram();
+    for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
     }
-    const to = new THREE.Vector3().setFromSpherical(place);
-    this.camera.position.set(to.x, -to.z, to.y);
-    this.controls.update();
-    this.draw();
+    ["position", "normal", "color", "value"].forEach((name, at) => gl.bindAttribLocation(program, at, name));
+    gl.linkProgram(program);
+    const places = new Map();
+    const at = name => {
+      if (!places.has(name)) places.set(name, gl.getUniformLocation(program, name));
+      return places.get(name);
+    };
+    return {program, at};
+  }
+
+  // Depths as the sun sees them.
+  depthMap() {
+    const {gl} = this, side = 2048, texture = gl.createTexture(), frame = gl.createFramebuffer();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, side, side);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return {side, texture, frame, of: ""};
+  }
+
+  // The colours of values: 256 of them, or 16 for labels, as RGBA bytes.
+  setScale(colors) {
+    const {gl} = this;
+    this.scaleColors = colors;
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this.scaleTexture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, colors.length / 4, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, colors);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    gl.activeTexture(gl.TEXTURE0);
+  }
+
+  // Puts a mesh in place `at`, 0 or 1. It fills the picture, or keeps a scale: `place` is [x, y, z, factor].
+  setBody(at, mesh, place) {
+    this.removeBody(at);
+    this.bodies[at] = {mesh, buffers: new BodyBuffers(this.gl, {position: 0, normal: 1, color: 2, value: 3}, mesh, place)};
+    if (this.maps[at]) this.maps[at].of = "";
+    this.request();
+  }
+  removeBody(at) {
+    if (this.bodies[at]) this.bodies[at].buffers.remove();
+    this.bodies[at] = null;
+    this.request();
+  }
+  placeOf(at) { return this.bodies[at] && this.bodies[at].buffers.place; }
+
+  request() {
+    if (this.requested) return;
+    this.requested = requestAnimationFrame(() => {
+      this.requested = 0;
+      this.draw();
+    });
+  }
+
+  shown() { return this.bodies.map((body, at) => body && at).filter(at => at !== null); }
+  sunDirection() { return vectors.direction(this.sun.longitude, this.sun.latitude); }
+  eye() { return vectors.direction(this.camera.longitude, this.camera.latitude).map(x => x * this.camera.distance); }
+  fov(width, height) { return Math.PI / 180 * (width < height ? 30 * Math.min(height / width, 2) : 30); }
+  // How many pixels of a picture of this height the radius 1 takes at the body's middle.
+  pixelsPerRadius(width, height) { return height / (2 * Math.tan(this.fov(width, height) / 2) * this.camera.distance); }
+
+  sunClip() {
+    const sun = this.sunDirection(), up = Math.abs(sun[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
+    return matrices.multiply(matrices.parallel(1.03, 0.5, 3.5), matrices.lookAtOrigin(sun.map(x => 2 * x), up));
+  }
+
+  drawDepths(at, sunClip) {
+    const {gl} = this, map = this.maps[at] = this.maps[at] || this.depthMap(), of = sunClip.join();
+    if (map.of === of) return map;
+    map.of = of;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, map.frame);
+    gl.viewport(0, 0, map.side, map.side);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(this.depth.program);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1.5, 3);
+    gl.uniformMatrix4fv(this.depth.at("sunClip"), false, sunClip);
+    gl.uniform4fv(this.depth.at("place"), this.bodies[at].buffers.place);
+    this.bodies[at].buffers.draw();
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return map;
+  }
+
+  drawBody(at, [x, y, width, height], sunClip) {
+    const {gl, paint} = this, {buffers} = this.bodies[at], map = this.drawDepths(at, sunClip), eye = this.eye();
+    gl.viewport(x, y, width, height);
+    gl.useProgram(paint.program);
+    const near = Math.max(this.camera.distance - 1.1, 0.02), far = this.camera.distance + 1.1;
+    const clip = matrices.multiply(matrices.perspective(this.fov(width, height), width / height, near, far), matrices.lookAtOrigin(eye, [0, 0, 1]));
+    gl.uniformMatrix4fv(paint.at("clip"), false, clip);
+    gl.uniformMatrix4fv(paint.at("sunClip"), false, sunClip);
+    gl.uniform4fv(paint.at("place"), buffers.place);
+    gl.uniform3fv(paint.at("sun"), this.sunDirection());
+    gl.uniform3fv(paint.at("eye"), eye);
+    gl.uniform1f(paint.at("fill"), this.fill);
+    gl.uniform1f(paint.at("texel"), 1 / map.side);
+    gl.uniform1i(paint.at("painted"), buffers.painted);
+    gl.uniform1i(paint.at("valued"), buffers.valued);
+    gl.uniform1i(paint.at("labelled"), buffers.labelled);
+    gl.bindTexture(gl.TEXTURE_2D, map.texture);
+    gl.uniform1i(paint.at("depths"), 0);
+    gl.uniform1i(paint.at("scale"), 1);
+    buffers.draw();
+  }
+
+  // The parts of a picture, one for each body: [x, y, width, height], or all of it where both lie over each other.
+  parts(width, height) {
+    const shown = this.shown();
+    if (shown.length < 2 || this.overlaid !== null) return shown.map(at => [at, [0, 0, width, height]]);
+    if (width < height) return shown.map((at, i) => [at, [0, Math.round((1 - i) * height / 2), width, Math.round(height / 2)]]);
+    return shown.map((at, i) => [at, [Math.round(i * width / 2), 0, Math.round(width / 2), height]]);
+  }
+
+  drawPixels(width, height) {
+    const {gl} = this;
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.CULL_FACE);
+    const sunClip = this.sunClip();
+    this.shown().forEach(at => this.drawDepths(at, sunClip));
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...this.background, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.parts(width, height).forEach(([at, part], i) => {
+      if (this.overlaid !== null) {
+        const border = Math.round(this.overlaid * width);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(i === 0 ? 0 : border, 0, i === 0 ? border : width - border, height);
+      }
+      this.drawBody(at, part, sunClip);
+      gl.disable(gl.SCISSOR_TEST);
+    });
   }
 
   draw() {
-    const {clientWidth: width, clientHeight: height} = this.canvas;
-    if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.fov = width < height ? 30 * Math.min(height / width, 2) : 30;
-    this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    const {clientWidth: width, clientHeight: height} = this.canvas, ratio = Math.min(window.devicePixelRatio || 1, 2);
+    if (width === 0 || height === 0 || this.lost) return;
+    const [w, h] = [width, height].map(side => Math.round(side * ratio));
+    if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, {width: w, height: h});
+    this.drawPixels(w, h);
+    this.ondraw();
   }
 
-  picture() {
-    this.draw();
-    return new Promise(done => this.canvas.toBlob(done, "image/png"));
+  // The picture of a size in pixels, painted into a context of two dimensions.
+  paintInto(context, width, height) {
+    Object.assign(this.canvas, {width, height});
+    this.drawPixels(width, height);
+    context.drawImage(this.canvas, 0, 0);
   }
 }

@@ -1,58 +1,88 @@
 #!/usr/bin/env python3
 """Puts the page into one file that needs no other and no network.
 
-    build_page.py --core FOLDER --three FOLDER --output page.html
+    build_page.py --core FOLDER --output page.html
 
-The core is astrolith_core.js and .wasm of FOLDER, three.js is Debian's libjs-three. Examples are all recipes of
-synthesis/examples and the bodies of library/. The recipe that the page opens first can be put in later: see the element `recipe` of page.html.
+The core is astrolith_core.js and .wasm of FOLDER. Examples are all recipes of synthesis/examples and the bodies of library/.
+The core and the data are compressed, so that the wall of bodies is read and shown before them. The recipe that the page opens
+first can be put in later: see the element `recipe` of page.html.
 """
 
 import argparse
 import base64
+import gzip
+import html
 import json
 import pathlib
+import re
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-SCRIPTS = [
-    "recipe_text.js",
-    "edited_recipe.js",
-    "drawn_body.js",
-    "schema_values.js",
-    "schema_form.js",
-    "core_client.js",
-    "body_view.js",
-    "page.js",
-]
-FIRST = "itokawa_relief.json"
+WALL = HERE / "wall"
 
 
-def examples():
-    return [{"name": file.name, "text": file.read_text()} for file in sorted((ROOT / "synthesis/examples").glob("*.json"))]
+def base64_text(content):
+    return base64.b64encode(content).decode()
 
 
-def library():
-    """The measured bodies, compact recipes in base 64. The page calls every recipe by the name of its JSON."""
-    files = sorted((ROOT / "library").glob("*.astro"))
-    return [{"name": file.stem + ".json", "bytes": base64.b64encode(file.read_bytes()).decode()} for file in files]
+def packed(content):
+    return base64_text(gzip.compress(content, 9, mtime=0))
 
 
-def population():
-    """The measured bodies that new ones are drawn between, a compact recipe in base 64."""
-    return base64.b64encode((ROOT / "library/populations/asteroids.astro").read_bytes()).decode()
+def modules(file, seen=None):
+    """The files of a module and of what it imports, each after those that it imports."""
+    seen = [] if seen is None else seen
+    for name in re.findall(r'^import .* from "\./(.*)";$', file.read_text(), re.MULTILINE):
+        if HERE / name not in seen:
+            modules(HERE / name, seen)
+    if file not in seen:
+        seen.append(file)
+    return seen
 
 
-def constants(core):
-    worker = [core / "astrolith_core.js", HERE / "core_calls.js", HERE / "core_worker.js"]
-    page = {
-        "worker": "\n".join(file.read_text() for file in worker),
-        "core": base64.b64encode((core / "astrolith_core.wasm").read_bytes()).decode(),
+def joined(*files):
+    """Modules as one script: their names at the top level differ."""
+    text = "\n".join(part.read_text() for file in files for part in modules(file))
+    text = re.sub(r"^import .*;\n", "", text, flags=re.MULTILINE)
+    return re.sub(r"^export (?=const|function|async function|class)", "", text, flags=re.MULTILINE)
+
+
+def worker(core):
+    """The core's worker is a script of the older kind."""
+    parts = [joined(HERE / name) for name in ("mesh_reading.js", "core_calls.js", "core_worker.js")]
+    return "\n".join([(core / "astrolith_core.js").read_text(), *parts])
+
+
+def data(core):
+    """Recipes by their names: JSON text of examples, compact ones in base 64 of measured and of drawn bodies."""
+
+    def compact(folder):
+        return {file.stem: base64_text(file.read_bytes()) for file in sorted(folder.glob("*.astro"))}
+
+    examples = sorted((ROOT / "synthesis/examples").glob("*.json"))
+    made = {
+        "worker": worker(core),
         "schema": json.loads((ROOT / "recipe/recipe.schema.json").read_text()),
-        "examples": examples() + library(),
-        "population": population(),
-        "first": FIRST,
+        "knobs": json.loads((ROOT / "recipe/knobs.json").read_text()),
+        "examples": {file.stem: file.read_text() for file in examples},
+        "library": compact(ROOT / "library"),
+        "wall": compact(WALL),
+        "population": base64_text((ROOT / "library/populations/asteroids.astro").read_bytes()),
     }
-    return "const PAGE = " + json.dumps(page) + ";"
+    return json.dumps(made).encode()
+
+
+def wall():
+    rows = []
+    for body in json.loads((WALL / "wall.json").read_text()):
+        sheet = base64_text((WALL / f"{body['name']}.webp").read_bytes())
+        title, words = html.escape(body["title"]), html.escape(body["words"])
+        rows.append(
+            f'<li><button type="button" data-name="{body["name"]}" onclick="window.earlyChoice=this.dataset.name">'
+            f'<span class="sheet-view" style="--sheet:url(data:image/webp;base64,{sheet})"></span>'
+            f"<b>{title}</b><small>{words}</small></button></li>"
+        )
+    return "\n".join(rows)
 
 
 def in_script(text):
@@ -62,16 +92,21 @@ def in_script(text):
 
 def main():
     parser = argparse.ArgumentParser()
-    for name in ("core", "three", "output"):
+    for name in ("core", "output"):
         parser.add_argument("--" + name, type=pathlib.Path, required=True)
     options = parser.parse_args()
-    three = [options.three / "build/three.min.js", options.three / "examples/js/controls/OrbitControls.js"]
-    scripts = [file.read_text() for file in [*three, *(HERE / name for name in SCRIPTS)]]
-    scripts.insert(2, constants(options.core))
-    page = (HERE / "page.html").read_text()
-    for name, text in (("style", (HERE / "page.css").read_text()), ("scripts", in_script("\n".join(scripts)))):
-        page = page.replace(f"@{name}@", text)
-    options.output.write_text(page.replace("@recipe@", "null"))
+    parts = {
+        "style": (HERE / "page.css").read_text(),
+        "wall": wall(),
+        "core": packed((options.core / "astrolith_core.wasm").read_bytes()),
+        "data": packed(data(options.core)),
+        "scripts": in_script(joined(HERE / "page.js")),
+        "recipe": "null",
+    }
+    page = re.sub(r"@(\w+)@", lambda match: parts[match[1]], (HERE / "page.html").read_text())
+    options.output.write_text(page)
+    size = len(gzip.compress(page.encode(), 9, mtime=0))
+    print(f"{options.output.name}: {len(page.encode())} bytes, {size} compressed")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 // The calls of the core (web/core/page_core.h) with the types of JavaScript. `module` is what makeAstrolithCore() gives.
 // A call that fails throws an Error whose `status` is that of synth: 1, the work failed, or 2, the recipe is wrong.
-function coreCalls(module) {
+export function coreCalls(module) {
   "use strict";
   // The core's pointers come as signed numbers, its memory may have 4 GB.
   const place = pointer => pointer >>> 0;
@@ -40,6 +40,13 @@ function coreCalls(module) {
     };
   }
 
+  // A number at each vertex of the mesh: {values, unit, legend}; `what` is slope, height, albedo or label.
+  function foundValues(what) {
+    require(withText(what, w => module._astrolith_find_values(w)));
+    const values = taken(Float32Array, module._astrolith_values(), module._astrolith_vertex_count());
+    return {values, ...JSON.parse(textAt(module._astrolith_figures()))};
+  }
+
   function written() {
     return {
       bytes: taken(Uint8Array, module._astrolith_bytes(), place(module._astrolith_byte_count())),
@@ -60,6 +67,7 @@ function coreCalls(module) {
       require(withBytes(recipe, r => withText(name, n => module._astrolith_make(r, recipe.length, n, resolution))));
     },
     mesh: madeMesh,
+    values: foundValues,
     writeMesh(format) {
       require(withText(format, f => module._astrolith_write_mesh(f)));
       return written();
@@ -70,11 +78,10 @@ function coreCalls(module) {
       return written();
     },
     // A body drawn from the recipe's population, with the ground of a measured one: {bytes, sha256, figures}. `library` has the
-    // bytes of measured bodies' recipes by the names of their files.
+    // bytes of measured bodies' recipes by the names of their files; without it the body stays bare.
     draw(recipe, name, library) {
       const drawn = drawnBy(module._astrolith_draw, recipe, name), ground = drawn.figures.ground.replace(/.*\//, "");
-      return ground ? drawnBy(module._astrolith_lay_ground, library[ground], ground) : drawn;
+      return ground && library ? drawnBy(module._astrolith_lay_ground, library[ground], ground) : drawn;
     },
   };
 }
-if (typeof module === "object") module.exports = coreCalls;

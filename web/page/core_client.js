@@ -1,6 +1,6 @@
 // The core as the page calls it: each call returns a promise, and the page never waits. A call cannot be interrupted where it
-// runs; stop() ends its worker, and the next call goes to one that is ready.
-class CoreClient {
+// runs; stop() ends its worker, and with it what the core has kept of the body.
+export class CoreClient {
   // `script` is the text of the worker, `module` the compiled core.
   constructor(script, module) {
     this.url = URL.createObjectURL(new Blob([script], {type: "text/javascript"}));
@@ -9,18 +9,6 @@ class CoreClient {
     this.waiting = new Map();
     this.onfraction = () => {};
     this.worker = this.started();
-    this.spare = null;
-    this.keepsSpare = false;
-  }
-  keepSpare() {
-    this.keepsSpare = true;
-    this.prepare();
-  }
-
-  // The workers that are missing. Only a call makes new ones: workers that cannot start would else replace each other for ever.
-  prepare() {
-    this.worker = this.worker || this.started();
-    if (this.keepsSpare) this.spare = this.spare || this.started();
   }
 
   started() {
@@ -30,7 +18,6 @@ class CoreClient {
       if (worker === this.worker) this.take(data);  // one that was ended may have sent more
     };
     worker.onerror = event => {
-      if (worker === this.spare) this.spare = null;
       if (worker === this.worker) this.fail(new Error(event.message || "the core stopped"));
     };
     return worker;
@@ -49,7 +36,7 @@ class CoreClient {
   call(call, ...args) {
     const id = ++this.number;
     return new Promise((resolve, reject) => {
-      this.prepare();
+      this.worker = this.worker || this.started();
       this.waiting.set(id, {resolve, reject});
       this.worker.postMessage({id, call, args});
     });
@@ -70,13 +57,14 @@ class CoreClient {
     const waiting = [...this.waiting.values()];
     this.waiting.clear();
     this.worker.terminate();
-    this.worker = this.spare;
-    this.spare = null;
+    this.worker = null;  // the next call starts another: one that cannot start would else be replaced for ever
     waiting.forEach(({reject}) => reject(error));
   }
 
   // Ends what is going on; its promises are rejected with the reason in `stopped`: "replaced", or "user".
   stop(reason) {
-    if (this.waiting.size > 0) this.fail(Object.assign(new Error("stopped"), {stopped: reason}));
+    if (this.waiting.size === 0) return;
+    this.fail(Object.assign(new Error("stopped"), {stopped: reason}));
+    this.worker = this.started();
   }
 }

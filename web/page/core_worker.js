@@ -1,14 +1,17 @@
-// The core in a worker. A message {id, call, args} is answered by {id, result} or {id, error: {message, status}}, and while a
-// mesh is made by {fraction}. The first message brings the module: {module}.
+// The core in a worker. A message {id, call, args} is answered by {id, result} or {id, error: {message, status}}, and
+// while a mesh is made by {fraction}. The first message brings the module: {module}.
 "use strict";
+const TELL_MS = 100;
 let core;
 
 function start(module) {
   let told = 0;
   const goesOn = fraction => {
     const now = performance.now();
-    if (now - told > 100) postMessage({fraction});
-    if (now - told > 100) told = now;
+    if (now - told > TELL_MS) {
+      postMessage({fraction});
+      told = now;
+    }
     return true;
   };
   core = new Promise((resolve, reject) => {
@@ -22,9 +25,12 @@ function start(module) {
 }
 
 const calls = {
-  make(core, recipe, name, resolution) {
+  // The mesh of a recipe; with `what` also its values of that kind.
+  make(core, recipe, name, resolution, what) {
     core.make(recipe, name, resolution);
-    return core.mesh();
+    const mesh = core.mesh();
+    mesh.place = meshPlace(mesh.positions);
+    return what ? {...mesh, ...core.values(what)} : mesh;
   },
   meshFile(core, recipe, name, resolution, format) {
     core.make(recipe, name, resolution);
@@ -32,6 +38,7 @@ const calls = {
   },
   writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
   draw: (core, recipe, name, library) => core.draw(recipe, name, library),
+  readMesh: (core, bytes, name) => readMesh(bytes, name),
   version: core => core.version(),
 };
 
@@ -40,7 +47,7 @@ const buffersOf = result => Object.values(result).filter(ArrayBuffer.isView).map
 onmessage = async ({data}) => {
   if (data.module) return start(data.module);
   try {
-    const result = calls[data.call](await core, ...data.args);
+    const result = await calls[data.call](await core, ...data.args);
     postMessage({id: data.id, result}, typeof result === "object" ? buffersOf(result) : []);
   } catch (error) {
     postMessage({id: data.id, error: {message: error.message, status: error.status}});

@@ -1,8 +1,10 @@
+import {recipeText} from "./recipe_text.js";
+
 // The recipe that is edited: its document, which layers are off, and what came before. A path is a list of keys, such as
 // ["layers", 0, "amplitude"]. Layers that are off stay in the list and are left out of the text.
 const MOST_STEPS = 200, MOST_CHARACTERS = 32e6;  // of what can be undone
 
-class EditedRecipe {
+export class EditedRecipe {
   constructor(document, name) {
     this.name = name;
     this.document = document;
@@ -26,6 +28,13 @@ class EditedRecipe {
     else delete holder[last];
     if (path.length === 1 && path[0] === "layers" && value === undefined) this.off.clear();
     if (path.length === 2 && path[0] === "layers" && value === undefined) this.moveMarks(at => at === last ? -1 : at > last ? at - 1 : at);
+  }
+
+  // Puts another document in the place of this one. Layers that are off stay so where the list stays as long.
+  replace(document, gesture) {
+    this.remember(gesture);
+    if ((document.layers || []).length !== (this.document.layers || []).length) this.off.clear();
+    this.document = document;
   }
 
   // Moves an item of a list to the place before or after it.
@@ -85,4 +94,3 @@ class EditedRecipe {
   undo() { return this.step(this.before, this.after); }
   redo() { return this.step(this.after, this.before); }
 }
-if (typeof module === "object") module.exports = EditedRecipe;

@@ -1,88 +1,121 @@
-// The page: what its controls do. PAGE holds what the build takes into it: {worker, core, schema, examples, population, first}.
-(async function () {
-  "use strict";
-  const at = id => document.getElementById(id);
-  const COARSE = [12, 16, 24, 32, 48];  // cells of a mesh while something moves
-  const REST_MS = 250;                  // after which a finer mesh is made
-  const SILENT_MS = 300;                // after which the bar says that work goes on
-  const LONGEST_LINK = 500000;          // characters; browsers take addresses of one or two million
+// The page: what its parts do together. The page's data are {worker, schema, knobs, examples, library, wall, population}.
+import {at, element, download, copyText} from "./dom.js";
+import {recipeText} from "./recipe_text.js";
+import {EditedRecipe} from "./edited_recipe.js";
+import {schemaValues} from "./schema_values.js";
+import {addedValues} from "./added_values.js";
+import {schemaForm} from "./schema_form.js";
+import {recipeKnobs} from "./knobs.js";
+import {knobPanel} from "./knob_panel.js";
+import {CoreClient} from "./core_client.js";
+import {BodyMaker} from "./body_maker.js";
+import {Stage} from "./stage.js";
+import {newAsteroids} from "./draws.js";
+import {droppedFiles, sortedFiles} from "./opening.js";
+import {recordTurn} from "./film.js";
+import {printedMesh} from "./printed_mesh.js";
+import {likesStrip} from "./likes.js";
+import {kept} from "./kept.js";
+import {tabs} from "./tabs.js";
 
-  const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
-  // Each byte as a character, in parts: a call has room for so many arguments.
-  function bytesText(bytes) {
-    let text = "";
-    for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
-    return text;
-  }
-  const encoded = text => new TextEncoder().encode(text);
-  const client = new CoreClient(PAGE.worker, await WebAssembly.compile(bytesOf(PAGE.core)));
-  PAGE.core = null;
+const LONGEST_LINK = 500000;  // characters; browsers take addresses of one or two million
+const SILENT_MS = 300;        // after which the bar says that work goes on
+const AHEAD_MS = 1200;        // of rest before the next asteroid is drawn ahead
+const VALUE_CELLS = 128;      // of the finest mesh whose values are shown: gravity takes long
 
-  let view = null;
-  try {
-    view = new BodyView(at("view"));
-  } catch (error) {
-    at("refusal").textContent = "This browser has no WebGL, so that nothing is drawn here; meshes can be saved all the same.";
-  }
+const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
+// Each byte as a character, in parts: a call has room for so many arguments.
+function bytesText(bytes) {
+  let text = "";
+  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  return text;
+}
+const encoded = text => new TextEncoder().encode(text);
+const base64Address = bytes => btoa(bytesText(bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 
-  let recipe = null, form = null, size = 1;
-  const values = schemaValues(PAGE.schema);
+// The bytes that the build has compressed into an element of the page.
+async function unpacked(id) {
+  const bytes = bytesOf(at(id).textContent);
+  at(id).remove();
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
+async function startPage() {
+  const [module, DATA] = await Promise.all([
+    unpacked("core").then(bytes => WebAssembly.compile(bytes)),
+    unpacked("data").then(bytes => JSON.parse(new TextDecoder().decode(bytes)))]);
+  const newCore = () => new CoreClient(DATA.worker, module), cores = {main: newCore(), fine: newCore(), ahead: newCore()};
+  const library = Object.fromEntries(Object.entries(DATA.library).map(([name, text]) => [`${name}.astro`, bytesOf(text)]));
+  const stage = new Stage(), values = schemaValues(DATA.schema), knobs = recipeKnobs(DATA.knobs, values);
+  let recipe = null, size = 1, opened = 0, images = [], unchanged = "";
+
+  // -- editing --------------------------------------------------------------------------------------------------------------
+
   const editing = {
     get: path => recipe.get(path),
     set: (path, value, gesture) => recipe.set(path, value, gesture),
     move: (path, step) => recipe.move(path, step),
-    endGesture: () => { recipe.gesture = undefined; },
+    endGesture: () => { if (recipe) recipe.gesture = undefined; },
     lengthUnit: () => recipe.document.length_unit || "m",
     size: () => size,
+    added: addedValues(DATA.knobs, values),
     canSwitch: path => path.length === 2 && path[0] === "layers",
     isOff: path => editing.canSwitch(path) && recipe.off.has(path[1]),
     switchItem: (path, on) => recipe.switchLayer(path[1], on),
     changed: () => changed(),
+    document: () => recipe.document,
+    put(document, gesture) {
+      recipe.replace(document, gesture);
+      changed();
+    },
   };
-  form = schemaForm(at("form"), values, editing);
+  const form = schemaForm(at("form"), values, editing), panel = knobPanel(at("knobs"), knobs, editing);
+  const panels = tabs(["knobs", "fields", "save"], name => {
+    if (name === "fields" && recipe) form.rebuild();
+    if (name === "save" && recipe) tellCommand();
+  });
+  at("seek").oninput = () => form.seek(at("seek").value);
 
-  // -- meshes: coarse ones while something moves, a finer one when it rests -----------------------------------------------
+  // -- meshes ---------------------------------------------------------------------------------------------------------------
 
-  let wanted = false, drawing = null, coarse = 3, fine = false, working = 0;
-
-  function say(mesh, cells, milliseconds) {
+  function say(mesh, cells) {
     const {triangles, extent, length_unit: unit, closed, components} = mesh.figures;
     const sides = extent.map(x => Number(x.toPrecision(3))).join(" × ");
     at("figures").textContent = `${triangles.toLocaleString("en")} triangles, ${closed ? "closed" : "open"}, ` +
-      `${components} ${components === 1 ? "piece" : "pieces"}, ${sides} ${unit}, ${cells} cells, ${(milliseconds / 1000).toFixed(2)} s`;
+      `${components} ${components === 1 ? "piece" : "pieces"}, ${sides} ${unit}, ${cells} cells, ${(mesh.milliseconds / 1000).toFixed(2)} s`;
   }
+  const maker = new BodyMaker(cores, {
+    onmesh(mesh, cells, isFirst) {
+      size = Math.max(...mesh.figures.extent);
+      mesh.milliseconds = mesh.milliseconds || 0;
+      at("ghost").hidden = at("waiting").hidden = true;
+      stage.show(mesh, isFirst, at("values").value);
+      performance.mark("picture", {detail: cells});
+      say(mesh, cells);
+      at("refusal").textContent = "";
+      form.clear();
+      if (isFirst) panel.update();
+    },
+    onrefusal: error => refuse(error),
+    onworking: isWorking => tellWork(isWorking),
+  });
 
-  // Waits for a mesh, which the user can stop.
-  async function waitedFor(work) {
-    ++working;
-    at("stop").disabled = false;
-    client.onfraction = fraction => { at("work").hidden = false; at("work").value = fraction; };
-    const silent = setTimeout(() => {  // fractions come late where a morph or a relief is prepared
-      if (at("work").hidden) at("work").removeAttribute("value");
-      at("work").hidden = false;
+  let silent = 0;
+  function tellWork(isWorking) {
+    clearTimeout(silent);
+    at("stop").hidden = at("work").hidden = true;
+    if (!isWorking) return;
+    silent = setTimeout(() => {  // fractions come late where a morph or a relief is prepared
+      at("work").removeAttribute("value");
+      at("work").hidden = at("stop").hidden = false;
     }, SILENT_MS);
-    try {
-      return await work;
-    } finally {
-      clearTimeout(silent);
-      if (--working === 0) at("work").hidden = at("stop").disabled = true;
-    }
   }
-
-  async function make(cells) {
-    const start = performance.now();
-    const mesh = await waitedFor(client.call("make", encoded(recipe.text()), recipe.name, cells));
-    size = Math.max(...mesh.figures.extent);
-    mesh.milliseconds = performance.now() - start;
-    return mesh;
-  }
-
-  function show(mesh, cells) {
-    if (view) view.show(mesh);
-    performance.mark("picture", {detail: cells});
-    say(mesh, cells, mesh.milliseconds);
-    at("refusal").textContent = "";
-    form.clear();
+  const onfraction = fraction => { at("work").value = fraction; };
+  Object.values(cores).forEach(core => { core.onfraction = onfraction; });
+  // Waits for a work that the user can stop.
+  async function waitedFor(work) {
+    tellWork(true);
+    return work.finally(() => tellWork(Boolean(maker.running)));
   }
 
   // The path that a message names, as keys; the layers are those of the text.
@@ -101,147 +134,228 @@
     if (path.length > 0) form.refuse(path, error.message);
   }
 
-  const rested = () => new Promise(done => setTimeout(done, REST_MS));
   const finest = () => Number(at("resolution").value);
-
-  // One mesh of a change; true where nothing changed meanwhile.
-  async function drawOnce(cells) {
-    try {
-      const mesh = await make(cells);
-      show(mesh, cells);
-      if (cells === COARSE[coarse] && mesh.milliseconds > 200 && coarse > 0) --coarse;
-      if (cells === COARSE[coarse] && mesh.milliseconds < 40 && coarse + 1 < COARSE.length) ++coarse;
-      return !wanted;
-    } catch (error) {
-      if (!wanted) refuse(error);
-      return false;
-    }
+  function wanted(more) {
+    const what = at("values").value, cells = what ? Math.min(finest(), VALUE_CELLS) : finest();
+    return {recipe: encoded(recipe.text()), name: recipe.name, cells, values: what || undefined, ...more};
   }
-
-  async function drawAll() {
-    while (wanted) {
-      wanted = false;
-      fine = false;
-      if (COARSE[coarse] < finest()) {
-        if (!await drawOnce(COARSE[coarse])) continue;
-        await rested();
-        if (wanted) continue;
-      }
-      fine = true;
-      await drawOnce(finest());
-    }
-  }
-
-  function draw() {
-    wanted = true;
-    if (drawing && fine) client.stop("replaced");
-    if (!drawing) drawing = drawAll().finally(() => { drawing = null; });
-    return drawing;
-  }
-  async function settled() {
-    while (drawing) await drawing;
-  }
+  const draw = more => recipe ? maker.want(wanted(more)) : Promise.resolve();
 
   function changed() {
     at("undo").disabled = recipe.before.length === 0;
     at("redo").disabled = recipe.after.length === 0;
-    at("like").hidden = !(recipe.document.layers || []).some(layer => layer.arrangement || layer.type === "relief");
+    if (location.hash) history.replaceState(null, "", location.href.replace(/#.*/, ""));  // the link holds another body now
+    kept.keep(recipe.name, () => recipe.text());
+    panel.update();
+    if (panels.shown() === "save") tellCommand();
     return draw();
   }
 
-  // -- recipes ------------------------------------------------------------------------------------------------------------
+  // -- opening --------------------------------------------------------------------------------------------------------------
 
-  let opened = 0;         // how many times the user opened something
-  let drawsBody = false;  // whether one is drawn from the population
+  function showBody(isBody) {
+    document.body.dataset.shows = isBody ? "body" : "wall";
+    kept.tellShown(isBody);
+    at("ghost").hidden = true;
+    if (isBody) return stage.view.request();
+    at("title").textContent = "";
+    tellKept();
+    drawSoon();
+  }
 
-  // Ends the meshes of what is open, and the draw of a body.
-  async function stopped() {
-    wanted = false;
-    if (drawing || drawsBody) client.stop("replaced");
-    await settled();
+  // Draws ahead once the page is at rest: what the user has chosen goes first.
+  let soon = 0;
+  function drawSoon() {
+    clearTimeout(soon);
+    soon = setTimeout(() => maker.running ? drawSoon() : asteroids.drawAhead(), AHEAD_MS);
   }
 
   // The document in the bytes of a file. The core reads it first, and refuses what is no recipe. The fields that a JSON recipe
   // leaves out stay out.
   async function documentOf(bytes, name) {
-    const json = await client.lasting("writeRecipe", bytes, name, "json");
+    const json = await cores.main.lasting("writeRecipe", bytes, name, "json");
     const isCompact = bytesText(bytes.subarray(0, 3)) === "AST";
     return recipeText.read(new TextDecoder().decode(isCompact ? json.bytes : bytes));
   }
 
+  // Shows a document; `mesh` is its coarse mesh where that was made before.
+  async function openDocument(document, name, {words = "", mesh = null, library: libraryName = ""} = {}) {
+    recipe = new EditedRecipe(document, name.replace(/\.astro$/, ".json"));
+    unchanged = libraryName && `${libraryName}\n${recipe.text()}`;
+    at("drawn").textContent = words;
+    at("title").textContent = recipe.name.replace(/\.json$/, "").replace(/_/g, " ");
+    stage.names[0] = at("title").textContent;
+    at("undo").disabled = at("redo").disabled = true;
+    ["layers", "layers[0]"].forEach(form.open);
+    tellRefusal("");
+    const {hidden} = at("ghost");
+    showBody(true);
+    at("ghost").hidden = hidden;
+    likes.clear();
+    if (panels.shown() === "fields") form.rebuild();
+    if (panels.shown() === "save") tellCommand();
+    kept.keep(recipe.name, () => recipe.text());
+    if (mesh) {
+      size = Math.max(...mesh.figures.extent);
+      panel.update();
+    }
+    await draw({opens: !mesh, mesh: at("values").value ? null : mesh});
+  }
+
   // Opens the bytes of a file, given or promised. One that holds no recipe leaves the page as it is, but for the message; of
-  // several that are opened at once the last counts. `words` tell of a drawn body.
-  async function openBytes(given, name, words = "") {
+  // several that are opened at once the last counts.
+  async function openBytes(given, name, more = {}) {
     const number = ++opened;
-    await stopped();
+    await maker.stop("replaced");
     let read;
     try {
       read = await documentOf(await given, name);
     } catch (error) {
-      if (number === opened && !error.stopped) at("refusal").textContent = error.message;
+      if (number === opened && !error.stopped) tellRefusal(error.message);
       return false;
     }
     if (number !== opened) return false;
-    recipe = new EditedRecipe(read, name.replace(/\.astro$/, ".json"));
-    at("drawn").textContent = words;
-    at("examples").value = PAGE.examples.some(example => example.name === recipe.name) ? recipe.name : "";
-    ["layers", "layers[0]"].forEach(form.open);
-    if (view) view.refit();
-    form.rebuild();
-    await changed();
+    await openDocument(read, name, more);
     return true;
   }
+  const tellRefusal = message => { at("refusal").textContent = message; };
   const openText = (text, name) => openBytes(encoded(text), name);
-  const openFile = file => openBytes(file.arrayBuffer().then(buffer => new Uint8Array(buffer)), file.name);
-  const openExample = example => openBytes(example.bytes ? bytesOf(example.bytes) : encoded(example.text), example.name);
 
-  at("examples").append(new Option("own recipe", ""));
-  for (const label of ["measured bodies", "examples"]) {
-    const group = at("examples").appendChild(document.createElement("optgroup"));
-    group.label = label;
-    const chosen = PAGE.examples.filter(({bytes}) => (bytes !== undefined) === (label === "measured bodies"));
-    group.append(...chosen.map(({name}) => new Option(name.replace(".json", "").replace(/_/g, " "), name)));
+  async function openNamed(name) {
+    const example = DATA.examples[name], drawn = DATA.wall[name];
+    if (library[`${name}.astro`]) return openBytes(library[`${name}.astro`], `${name}.astro`, {library: name});
+    if (drawn) return openBytes(bytesOf(drawn), `${name}.astro`);
+    return example !== undefined && openText(example, `${name}.json`);
   }
-  at("examples").onchange = () => {
-    const example = PAGE.examples.find(({name}) => name === at("examples").value);
-    if (example) openExample(example);
+
+  async function openMesh({bytes, name}) {
+    const fit = `fit_shape ${name} -o ${name.replace(/\.\w+$/, "")}.json`;
+    const words = element("p", {textContent: `${name} is a mesh. It is shown beside the body, turning with it. To make a recipe of it that you can change here, run this where the programs are, and drop the recipe that it writes:`});
+    const command = element("pre", {textContent: fit, tabIndex: 0}), copy = element("button", {type: "button", textContent: "Copy the command"});
+    copy.onclick = () => copyText(fit, copy);
+    showBody(true);
+    try {
+      const mesh = await waitedFor(cores.main.lasting("readMesh", bytes, name));
+      at("refusal").textContent = "";
+      stage.showBeside(mesh, name);
+      tellBeside(words, command, copy);
+    } catch (error) {
+      at("refusal").textContent = `${error.message} (${fit} makes a recipe of it)`;
+    }
+  }
+  function tellBeside(...parts) {
+    const close = element("button", {type: "button", textContent: "Remove it", onclick: () => hideBeside()});
+    at("beside").replaceChildren(...parts, " ", close);
+    at("beside").hidden = false;
+    at("compare").setAttribute("aria-pressed", "true");
+  }
+  function hideBeside() {
+    stage.hideBeside();
+    at("beside").hidden = true;
+    at("compare").setAttribute("aria-pressed", "false");
+  }
+  at("compare").onclick = () => {
+    if (at("compare").getAttribute("aria-pressed") === "true") return hideBeside();
+    if (!stage.mesh) return;
+    stage.showBeside(stage.mesh, `${at("title").textContent}, before`);
+    tellBeside(element("p", {textContent: "This body stays beside what you make next. Both turn together."}));
   };
+
+  async function openFiles(files) {
+    if (files.length === 0) return;
+    const given = await sortedFiles(files);
+    if (given.kind === "none") return tellRefusal(given.words);
+    if (given.kind === "mesh") return openMesh(given);
+    await openBytes(given.bytes, given.name, {words: given.words});
+  }
   at("file").onchange = () => {
-    const file = at("file").files[0];
+    const files = [...at("file").files];
     at("file").value = "";  // so that the same file can be opened again
-    if (file) openFile(file);
+    openFiles(files);
   };
   document.ondragover = event => { event.preventDefault(); document.body.classList.add("dropping"); };
-  document.ondragleave = () => document.body.classList.remove("dropping");
+  document.ondragleave = event => { if (!event.relatedTarget) document.body.classList.remove("dropping"); };
   document.ondrop = event => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+    droppedFiles(event.dataTransfer).then(openFiles);
   };
 
-  // A body that nobody has seen, from the population.
-  const body = drawnBody(at, PAGE.schema, () => documentOf(bytesOf(PAGE.population), "asteroids"));
-  const measured = () => Object.fromEntries(PAGE.examples.filter(({bytes}) => bytes !== undefined)
-    .map(({name, bytes}) => [name.replace(".json", ".astro"), bytesOf(bytes)]));
+  // -- the wall -------------------------------------------------------------------------------------------------------------
 
+  at("examples").append(new Option("choose", ""));
+  for (const [label, names] of [["measured bodies", Object.keys(DATA.library)], ["examples", Object.keys(DATA.examples)]]) {
+    const group = at("examples").appendChild(element("optgroup", {label}));
+    group.append(...names.map(name => new Option(name.replace(/_/g, " "), name)));
+  }
+  at("examples").onchange = () => {
+    if (at("examples").value) openNamed(at("examples").value);
+    at("examples").value = "";
+  };
+  // The picture of a body stays until its first mesh is there.
+  function openFromWall(button) {
+    at("ghost").style.setProperty("--sheet", button.querySelector(".sheet-view").style.getPropertyValue("--sheet"));
+    stage.clear();
+    showBody(true);
+    at("ghost").hidden = false;
+    return openNamed(button.dataset.name);
+  }
+  document.querySelectorAll(".bodies button").forEach(button => { button.onclick = () => openFromWall(button); });
+  at("home").onclick = () => showBody(false);
+  function tellKept() {
+    const last = kept.recipe();
+    at("go-on").hidden = !last && !recipe;
+    if (recipe || last) at("go-on").textContent = `Go on with ${(recipe || last).name.replace(/\.json$/, "").replace(/_/g, " ")}`;
+  }
+  at("go-on").onclick = () => recipe ? openKeptRecipe() : openKept();
+  const openKeptRecipe = () => {
+    at("title").textContent = stage.names[0];
+    showBody(true);
+  };
+  function openKept() {
+    const last = kept.recipe();
+    return last ? openText(last.text, last.name) : Promise.resolve(false);
+  }
+
+  // -- new asteroids --------------------------------------------------------------------------------------------------------
+
+  const asteroids = newAsteroids({
+    cores, schema: DATA.schema, library, finished: knobs.finished,
+    population: () => cores.ahead.lasting("writeRecipe", bytesOf(DATA.population), "asteroids", "json")
+      .then(({bytes}) => recipeText.read(new TextDecoder().decode(bytes))),
+  });
   async function drawNext() {
     const number = ++opened;
-    await stopped();
-    const {text, name} = await body.next();
+    showBody(true);
+    at("waiting").hidden = stage.view.shown().length > 0;
+    await maker.stop("replaced");
+    const drawn = await waitedFor(asteroids.next()).catch(error => {
+      at("waiting").hidden = true;
+      throw error;
+    });
     if (number !== opened) return;
-    drawsBody = true;
-    const drawn = await waitedFor(client.call("draw", encoded(text), "asteroids", measured())).finally(() => { drawsBody = false; });
-    const document = recipeText.read(new TextDecoder().decode(drawn.bytes));
-    if (number === opened) await openBytes(drawn.bytes, name, body.words(document, drawn.figures));
+    const {document, name, words, mesh} = drawn;
+    await openDocument(document, name, {words, mesh});
+    drawSoon();
   }
-  at("draw").onsubmit = event => {
+  const drawOrRefuse = event => {
     event.preventDefault();
-    drawNext().catch(refuse);
+    return drawNext().catch(refuse);
   };
+  at("draw").onsubmit = at("new").onclick = at("first-new").onclick = drawOrRefuse;
+  at("draw").onchange = drawSoon;
+
+  const likes = likesStrip(at("strip"), {
+    cores, stage, recipe: () => recipe, finest,
+    take: document => editing.put(document, undefined),
+  });
+  at("likes").onclick = () => recipe && likes.toggle();
+
+  // -- undo -----------------------------------------------------------------------------------------------------------------
 
   function step(back) {
-    if (back ? recipe.undo() : recipe.redo()) {
-      form.rebuild();
+    if (recipe && (back ? recipe.undo() : recipe.redo())) {
+      if (panels.shown() === "fields") form.rebuild();
       changed();
     }
   }
@@ -254,99 +368,94 @@
     if (event.key === "y" || (event.key.toLowerCase() === "z" && event.shiftKey)) { event.preventDefault(); step(false); }
   };
 
-  // Another body of the kind: what synth --like --seed does.
-  at("like").onclick = () => {
-    (recipe.document.layers || []).forEach((layer, i) => {
-      if (layer.type === "relief") recipe.set(["layers", i, "arrangement"], "like", "like");
-    });
-    recipe.set(["seed"], Math.floor(Math.random() * 2 ** 31), "like");
-    recipe.gesture = undefined;
-    form.rebuild();
-    changed();
-  };
+  // -- what is saved --------------------------------------------------------------------------------------------------------
 
-  // -- what is saved ------------------------------------------------------------------------------------------------------
-
-  function download(blob, name) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  }
-
+  const stem = () => recipe.name.replace(/\.[^.]*$/, "");
   // The mesh of the finest resolution as a file, {bytes, sha256}: of the recipe as it is now, whatever is drawn.
-  const meshFile = format =>
-    waitedFor(client.lasting("meshFile", encoded(recipe.text()), recipe.name, finest(), format));
-  const recipeFile = format => client.lasting("writeRecipe", encoded(recipe.text()), recipe.name, format);
+  const meshFile = format => waitedFor(cores.fine.lasting("meshFile", encoded(recipe.text()), recipe.name, finest(), format));
+  const recipeFile = format => cores.main.lasting("writeRecipe", encoded(recipe.text()), recipe.name, format);
 
   async function link() {
-    const {bytes} = await recipeFile("astro");
-    const code = btoa(bytesText(bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+    const code = base64Address((await recipeFile("astro")).bytes);
     if (code.length > LONGEST_LINK) {
       throw new Error(`the recipe is too long for a link (${code.length} of at most ${LONGEST_LINK} characters); save the .astro`);
     }
     return location.href.replace(/#.*/, "") + "#r=" + code;
   }
 
-  async function save(kind) {
-    const stem = recipe.name.replace(/\.[^.]*$/, "");
-    if (kind === "json") return download(new Blob([recipe.text()], {type: "application/json"}), stem + ".json");
-    if (kind === "astro") return download(new Blob([(await recipeFile("astro")).bytes]), stem + ".astro");
-    if (kind === "png") return view && download(await view.picture(), stem + ".png");
-    if (kind !== "link") return download(new Blob([(await meshFile(kind)).bytes]), `${stem}.${kind}`);
-    history.replaceState(null, "", await link());
-    at("figures").textContent = "the address of this page now holds the recipe";
-    if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
+  // The command that makes the same mesh where the programs are.
+  async function tellCommand() {
+    const output = `-o ${stem()}.glb --resolution ${finest()}`, [name, text] = unchanged.split(/\n([\s\S]*)/);
+    if (name && text === recipe.text()) return void (at("command").textContent = `synth ${name} ${output}`);
+    const {bytes} = await recipeFile("astro").catch(() => ({bytes: new Uint8Array()}));
+    at("command").textContent = `echo ${btoa(bytesText(bytes))} | base64 -d > ${stem()}.astro\nsynth ${stem()}.astro ${output}`;
   }
-  at("saves").onclick = event => {
-    const kind = event.target.dataset.save;
-    if (kind) save(kind).catch(refuse);
+  at("copy-command").onclick = () => copyText(at("command").textContent, at("copy-command"));
+
+  const saves = {
+    json: () => download(new Blob([recipe.text()], {type: "application/json"}), `${stem()}.json`),
+    astro: async () => download(new Blob([(await recipeFile("astro")).bytes]), `${stem()}.astro`),
+    png: () => new Promise(done => stage.picture(3840, 2160).toBlob(done, "image/png")).then(blob => download(blob, `${stem()}.png`)),
+    film: async () => download(await waitedFor(recordTurn(stage)), `${stem()}.webm`),
+    stl: async () => {
+      const mesh = await waitedFor(cores.fine.lasting("make", encoded(recipe.text()), recipe.name, finest()));
+      download(new Blob([printedMesh(mesh, Number(at("print-size").value) || 80)], {type: "model/stl"}), `${stem()}.stl`);
+    },
+    link: async button => {
+      history.replaceState(null, "", await link());
+      await copyText(location.href, button.firstChild.parentElement);
+      at("figures").textContent = "the address of this page now holds the body, and was copied";
+    },
   };
+  at("save-panel").addEventListener("click", event => {
+    const button = event.target.closest("[data-save]");
+    if (!button || !recipe) return;
+    const kind = button.dataset.save, save = saves[kind] || (async () => download(new Blob([(await meshFile(kind)).bytes]), `${stem()}.${kind}`));
+    Promise.resolve().then(() => save(button)).catch(refuse);
+  });
 
-  // -- the rest -----------------------------------------------------------------------------------------------------------
+  // -- the rest -------------------------------------------------------------------------------------------------------------
 
-  at("stop").onclick = () => client.stop("user");
-  const tellCells = () => { at("cells").textContent = finest(); };
-  at("resolution").oninput = () => { tellCells(); draw(); };
-  const turnSun = () => view && view.setSun(Number(at("azimuth").value), Number(at("height").value));
-  at("azimuth").oninput = at("height").oninput = turnSun;
-  tellCells();
-  client.lasting("version").then(version => { at("version").textContent = `Astrolith ${version}.`; }, refuse);
+  at("stop").onclick = () => { maker.stop("user"); asteroids.stop(); };
+  at("resolution").onchange = () => draw();
+  at("values").onchange = () => draw();
+  cores.main.lasting("version").then(version => { at("version").textContent = `Astrolith ${version}.`; }, refuse);
 
   // For whoever drives the page by a script: tests, and other pages.
   const setCells = cells => {
+    if (![...at("resolution").options].some(option => option.value === String(cells))) at("resolution").append(new Option(cells));
     at("resolution").value = cells;
-    tellCells();
-    return draw();
+    return draw({patient: true});
   };
-  window.astrolith = {openText, settled, meshFile, recipeFile, recipeText: () => recipe.text(), link, setCells};
+  window.astrolith = {openText, openFiles, openNamed, settled: () => opening.then(() => maker.settled()), meshFile, recipeFile, recipeText: () => recipe && recipe.text(), link, setCells};
 
   async function openLink(code) {
     let bytes;
     try {
       bytes = bytesOf(code.replace(/-/g, "+").replace(/_/g, "/"));
     } catch (error) {
-      at("refusal").textContent = "the link is damaged: what stands behind #r= is no recipe";
+      tellRefusal("the link is damaged: what stands behind #r= is no recipe");
       return false;
     }
     return openBytes(bytes, "link.astro");
   }
 
-  // The recipe of the link, or that of the page. Where neither is one, the first example, so that there is one to change.
+  // The recipe of the link, or that of the page, or what this tab showed before it was loaded again; else the wall.
   async function openFirst() {
-    const link = location.hash.match(/^#r=(.*)$/), own = JSON.parse(at("recipe").textContent);
-    if (link) await openLink(link[1]);
-    else if (own) await openBytes(bytesOf(own.bytes), own.name);
-    if (recipe && (link || own)) return;
-    const message = at("refusal").textContent;
-    await openExample(PAGE.examples.find(example => example.name === PAGE.first));
-    if (message) at("refusal").textContent = message;
+    const link = location.hash.match(/^#r=(.*)$/), own = JSON.parse(at("recipe").textContent), early = window.earlyChoice;
+    if (link) return openLink(link[1]);
+    if (early) return early === "new" ? drawNext().catch(refuse) : openFromWall(document.querySelector(`[data-name=${early}]`));
+    if (kept.wasShown() && await openKept()) return true;
+    if (own) return openBytes(bytesOf(own.bytes), own.name);
+    return showBody(false);
   }
   window.onhashchange = openFirst;
-  await openFirst();
-  client.keepSpare();
+  const opening = openFirst();
   document.body.dataset.ready = "yes";
-})().catch(error => {
-  document.getElementById("refusal").textContent = `this browser cannot show the page: ${error.message}`;
+  await opening;
+}
+
+startPage().catch(error => {
+  document.body.dataset.shows = "body";
+  at("refusal").textContent = `this browser cannot show the page: ${error.message}`;
 });

@@ -1,6 +1,6 @@
 // Recipes as JSON text. Seeds are whole numbers of up to 64 bits, which JavaScript's numbers cannot hold: whole numbers of 16
 // digits and more are kept as marked texts, and become numbers again where a recipe is written.
-const recipeText = (function () {
+export const recipeText = (function () {
   "use strict";
   const MARK = "\u0000integer ";
   const TOKENS = /"[^"\\]*(?:\\.[^"\\]*)*"|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?/g;
@@ -39,4 +39,3 @@ const recipeText = (function () {
 
   return {read, write, isBig, digits, integer};
 })();
-if (typeof module === "object") module.exports = recipeText;

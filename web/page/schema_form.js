@@ -4,21 +4,19 @@
 //   lengthUnit(), size()       of the document's lengths
 //   changed()                  is called after each change by the user
 //   isOff(path), switchItem(path, on)   for lists whose items can be switched off, those of kinds
-function schemaForm(container, values, editing) {
+//   added                      what something new starts with: item(kind, type, size), field(owner, key, node, size)
+import {element} from "./dom.js";
+import {recipeText} from "./recipe_text.js";
+
+export function schemaForm(container, values, editing) {
   "use strict";
-  const MOST_SHOWN = 12;
+  const MOST_SHOWN = 12, MOST_FOUND = 40;
   const open = new Set([""]);       // the groups that the user has open, by their paths
   const shown = new Map();          // how many items of a long list are shown
   const fields = new Map();         // the element of each path that is in the form
 
   const pathText = path => path.reduce((text, key) => typeof key === "number" ? `${text}[${key}]` : text ? `${text}.${key}` : key, "");
 
-  function element(tag, {ariaLabel, ...properties}, ...children) {
-    const made = Object.assign(document.createElement(tag), properties);
-    if (ariaLabel) made.setAttribute("aria-label", ariaLabel);
-    made.append(...children.filter(child => child !== null && child !== undefined));
-    return made;
-  }
   const button = (text, title, act) => element("button", {type: "button", textContent: text, title, ariaLabel: title, onclick: act});
 
   function change(path, value, gesture) {
@@ -141,6 +139,8 @@ function schemaForm(container, values, editing) {
     return element("small", {textContent: words.replace(/`/g, "")});
   }
 
+  const freshField = (path, node) => editing.added.field(editing.get(path.slice(0, -1)), path[path.length - 1], node, editing.size());
+
   const addLabel = path => `add ${pathText(path)}`, removeLabel = path => `remove ${pathText(path)}`;
   const adderLabel = path => `add to ${pathText(path)}`;  // of an item of a list
 
@@ -157,7 +157,7 @@ function schemaForm(container, values, editing) {
     fields.set(pathText(path), holder);
     const name = element("span", {className: "name", textContent: key});
     if (value === undefined) {
-      const add = button("add", addLabel(path), stop(() => { editing.set(path, values.fresh(node)); return [pathText(path)]; }));
+      const add = button("add", addLabel(path), stop(() => { editing.set(path, freshField(path, node)); return [pathText(path)]; }));
       holder.append(element("div", {className: "head"}, name, add), meaning(node));
       return holder;
     }
@@ -166,24 +166,25 @@ function schemaForm(container, values, editing) {
     return holder;
   }
 
-  // A group that opens and closes; what is in it is made when it first opens.
+  // A group that opens and closes; what is in it is made when it first opens. Its buttons stand beside the summary, since what is
+  // pressed must not hold buttons itself.
   function group(path, head, buttons, fill) {
     const key = pathText(path);
-    const made = element("details", {className: "group", open: open.has(key)});
     const body = element("div", {className: "body"});
+    const details = element("details", {open: open.has(key)}, element("summary", {}, head), body);
+    const made = element("div", {className: "group"}, details, element("span", {className: "buttons"}, ...buttons));
     fields.set(key, made);
-    made.append(element("summary", {}, head, element("span", {className: "buttons"}, ...buttons)), body);
     let filled = false;
     const fillOnce = () => {
       if (filled) return;
       filled = true;
       fill(body);
     };
-    if (made.open) fillOnce();
-    made.fillNow = () => { open.add(key); made.open = true; fillOnce(); };
-    made.ontoggle = () => {
-      made.open ? open.add(key) : open.delete(key);
-      if (made.open) fillOnce();
+    if (details.open) fillOnce();
+    made.fillNow = () => { open.add(key); details.open = true; fillOnce(); };
+    details.ontoggle = () => {
+      details.open ? open.add(key) : open.delete(key);
+      if (details.open) fillOnce();
     };
     return made;
   }
@@ -195,7 +196,7 @@ function schemaForm(container, values, editing) {
       fields.set(pathText(path), holder);
       holder.append(element("div", {className: "head"}, element("span", {className: "name", textContent: key}),
         button("add", addLabel(path), stop(() => {
-          editing.set(path, values.fresh(node));
+          editing.set(path, freshField(path, node));
           open.add(pathText(path));
           return [removeLabel(path)];
         }))), meaning(node));
@@ -265,10 +266,9 @@ function schemaForm(container, values, editing) {
   function kindItem(path, kinds, value, count) {
     const kind = kinds.find(k => values.wordsOf(k).includes(value.type));
     const on = element("input", {type: "checkbox", checked: !editing.isOff(path), title: "on or off", ariaLabel: `${pathText(path)} on`});
-    on.onclick = event => event.stopPropagation();
     on.onchange = () => { editing.switchItem(path, on.checked); editing.changed(); };
-    const head = element("span", {}, editing.canSwitch(path) ? on : null, " " + itemTitle(value, path[path.length - 1]));
-    return group(path, head, itemButtons(path, count), body => {
+    const buttons = [editing.canSwitch(path) ? on : null, ...itemButtons(path, count)];
+    return group(path, itemTitle(value, path[path.length - 1]), buttons, body => {
       if (kind) body.append(...objectFields(path, kind));
       else body.append(jsonField(path, value));
     });
@@ -299,27 +299,14 @@ function schemaForm(container, values, editing) {
       open.add(pathText([...path, list.length]));
       shown.set(pathText(path), Math.max(shown.get(pathText(path)) || 0, list.length + 1));
     });
-    if (kinds.length === 0) return [button("add", adderLabel(path), add(() => values.fresh(items)))];
+    if (kinds.length === 0) return [button("add", adderLabel(path), add(() => values.fresh(items, editing.size())))];
     const words = kinds.flatMap(values.wordsOf);
     const choice = element("select", {ariaLabel: `kind to ${adderLabel(path)}`},
       ...words.map(word => element("option", {value: word, textContent: word})));
-    choice.onclick = event => event.stopPropagation();
     return [choice, button("add", adderLabel(path), add(() => newOfKind(kinds, choice.value)))];
   }
 
-  function newOfKind(kinds, word) {
-    const kind = kinds.find(k => values.wordsOf(k).includes(word));
-    return {...values.fresh(kind), ...risen(kind), type: word};
-  }
-
-  // A new kind of relief that is 0 high would show nothing: its first height becomes a fiftieth of the body.
-  function risen(kind) {
-    const key = Object.keys(kind.properties).find(name => {
-      const node = values.resolved(kind.properties[name]);
-      return node.type === "number" && node.unit === "length" && node.default === 0 && /height/.test(node.description);
-    });
-    return key ? {[key]: Number((0.02 * editing.size()).toPrecision(2))} : {};
-  }
+  const newOfKind = (kinds, word) => editing.added.item(kinds.find(k => values.wordsOf(k).includes(word)), word, editing.size());
 
   function listField(path, key, node, required) {
     const given = editing.get(path), list = given || [];
@@ -336,15 +323,45 @@ function schemaForm(container, values, editing) {
 
   // -- the whole -------------------------------------------------------------------------------------------------------
 
+  let sought = "";  // the words that the user looks for
+
+  // The fields, at any depth, whose path or meaning has all the words.
+  function soughtFields() {
+    const words = sought.toLowerCase().split(/\s+/), made = [];
+    const fits = (path, node) => words.every(word => `${pathText(path)} ${node.description || ""}`.toLowerCase().replace(/_/g, " ").includes(word.replace(/_/g, " ")));
+    const visit = (path, node) => {
+      if (made.length >= MOST_FOUND) return;
+      const value = editing.get(path), key = path[path.length - 1];
+      if (isGroup(node)) {
+        if (value === undefined && path.length > 0) return fits(path, node) && made.push(objectField(path, pathText(path), node, false));
+        return Object.keys(node.properties).forEach(name => visit([...path, name], values.resolved(node.properties[name])));
+      }
+      if (isList(node)) {
+        return (value || []).slice(0, MOST_SHOWN).forEach((item, at) => visit([...path, at], values.kindOf(node.items, item) || values.resolved(node.items)));
+      }
+      if (typeof key === "string" && fits(path, node) && (node.minimum === undefined || node.minimum !== node.maximum)) made.push(plainField(path, pathText(path), node, false));
+    };
+    visit([], values.resolved(values.schema));
+    return made.length > 0 ? made : [element("p", {textContent: "No field of this recipe has these words."})];
+  }
+
+  // What the body is made of comes first, and what is said about it last.
+  function allFields() {
+    const all = objectFields([], values.resolved(values.schema)), parts = all.filter(made => made.className === "group");
+    return [...parts, ...all.filter(made => !parts.includes(made))];
+  }
+
   // `focus` are the labels of what may have the focus then; without it that stays where it is.
   function rebuild(focus = [document.activeElement && document.activeElement.getAttribute("aria-label")]) {
     fields.clear();
-    // What the body is made of comes first, and what is said about it last.
-    const all = objectFields([], values.resolved(values.schema)), parts = all.filter(made => made.tagName === "DETAILS");
-    container.replaceChildren(...parts, ...all.filter(made => !parts.includes(made)));
+    container.replaceChildren(...sought ? soughtFields() : allFields());
     const labelled = [...container.querySelectorAll("[aria-label]")];
     const again = focus.map(label => labelled.find(made => made.getAttribute("aria-label") === label)).find(Boolean);
     if (again) again.focus({preventScroll: true});
+  }
+  function seek(text) {
+    sought = text.trim();
+    rebuild();
   }
 
   function clear() {
@@ -371,5 +388,5 @@ function schemaForm(container, values, editing) {
     return false;
   }
 
-  return {rebuild, refuse, clear, open: path => open.add(path)};
+  return {rebuild, seek, refuse, clear, open: path => open.add(path)};
 }

@@ -1,5 +1,5 @@
 // What a JSON schema says of a value: its meaning, limits, what a new one is like. Knows no recipe.
-function schemaValues(schema) {
+export function schemaValues(schema) {
   "use strict";
   const FAR = 1e6;  // limits beyond it say nothing of what is usual
 
@@ -32,7 +32,10 @@ function schemaValues(schema) {
   const wordsOf = kind => resolved(kind.properties.type).enum;
   const kindOf = (items, value) => kindsOf(items).find(kind => wordsOf(kind).includes(value && value.type));
 
-  function newNumber(node) {
+  // A length of a new item is a twentieth of the body's longest side, where that is known.
+  function newNumber(node, size) {
+    const sized = {"length": 0.05 * size, "cycles per length": 5 / size, "per squared length": 20 / (size * size)}[node.unit];
+    if (sized) return Number(sized.toPrecision(3));
     const least = node.exclusiveMinimum !== undefined ? node.exclusiveMinimum : node.minimum;
     if (node.maximum < 1 || (least === 0 && node.maximum === 1)) return (least + node.maximum) / 2;
     if (least === undefined || least < 1) return 1;
@@ -40,7 +43,7 @@ function schemaValues(schema) {
   }
 
   // A value that the schema allows, with the fields that it requires.
-  function fresh(given) {
+  function fresh(given, size) {
     const node = resolved(given);
     if (node.default !== undefined) return JSON.parse(JSON.stringify(node.default));
     if (node.defaults) return Object.values(node.defaults)[0];
@@ -48,12 +51,12 @@ function schemaValues(schema) {
     const type = node.type;
     if (type === "boolean") return false;
     if (type === "string") return "";
-    if (isNumber(node)) return newNumber(node);
-    if (type === "array") return Array.from({length: node.minItems || 0}, (_, at) => fresh(itemNode(node, at)));
-    if (!node.properties && node.oneOf) return fresh(node.oneOf[0]);
+    if (isNumber(node)) return newNumber(node, size);
+    if (type === "array") return Array.from({length: node.minItems || 0}, (_, at) => fresh(itemNode(node, at), size));
+    if (!node.properties && node.oneOf) return fresh(node.oneOf[0], size);
     const value = {};
     const oneOf = node.oneOf && node.oneOf[0].required || [];
-    for (const key of [...(node.required || []), ...oneOf]) value[key] = fresh(node.properties[key]);
+    for (const key of [...(node.required || []), ...oneOf]) value[key] = fresh(node.properties[key], size);
     return value;
   }
 
@@ -85,4 +88,3 @@ function schemaValues(schema) {
 
   return {schema, resolved, isNumber, isFixed, isRow, kindsOf, newKindsOf, kindOf, wordsOf, fresh, slide, limits};
 }
-if (typeof module === "object") module.exports = schemaValues;

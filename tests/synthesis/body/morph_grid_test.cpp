@@ -210,5 +210,27 @@ TEST(MorphGrid, RefusesShapesThatLeaveItsDomain) {
   EXPECT_THROW(testing::LoneBody(body, 1), InputError);
 }
 
+// A field that is like another takes its grids, those of operands, too, and has the same values under other
+// layers.
+TEST(MorphGrid, IsTakenFromAFieldThatIsLike) {
+  Recipe recipe;
+  recipe.body = make_morph({3.0, 2.0, 1.5},
+                           {make_donor(nosed(), {1, 1, 1}, 1.0), make_donor(ball(1.0), {1, 1, 1}, 1.0)});
+  BodyOperation joined;
+  joined.operand = {make_morph({1.5, 2.5, 1.0},
+                               {make_donor(ball(1.0), {1, 1, 1}, 1.0), make_donor(nosed(), {1, 1, 1}, 2.0)})};
+  recipe.body->operations = {joined};
+  const ImplicitField first(recipe);
+  FractalLayer hills;
+  hills.amplitude = 0.1;
+  recipe.layers = {hills};
+  const ImplicitField own(recipe), like(recipe, "recipe", {}, {}, &first);
+  CounterRandom random(3, 0);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p = testing::random_point(random, testing::cube_about_origin(3.0));
+    ASSERT_EQ(own.value(p), like.value(p)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace astrolith

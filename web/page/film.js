@@ -1,0 +1,25 @@
+// A film of the body that turns once under the sun, recorded by the browser as WebM: {blob} when it is done.
+export function recordTurn(stage, {width = 1280, height = 720, seconds = 8} = {}) {
+  if (typeof MediaRecorder === "undefined") return Promise.reject(new Error("this browser records no films; take the picture"));
+  const canvas = document.createElement("canvas");
+  stage.picture(width, height, canvas);
+  const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"].find(kind => MediaRecorder.isTypeSupported(kind));
+  const recorder = new MediaRecorder(canvas.captureStream(30), {mimeType: type, videoBitsPerSecond: 8e6}), parts = [];
+  recorder.ondataavailable = event => parts.push(event.data);
+  return new Promise((resolve, reject) => {
+    recorder.onstop = () => resolve(new Blob(parts, {type: type.replace(/;.*/, "")}));
+    recorder.onerror = event => reject(event.error || new Error("the film could not be recorded"));
+    recorder.start();
+    const begin = performance.now();
+    let turned = 0;
+    const step = now => {
+      const share = Math.min((now - begin) / (1000 * seconds), 1), degrees = 360 * share;
+      stage.turnBy(degrees - turned);
+      turned = degrees;
+      stage.picture(width, height, canvas);
+      if (share < 1) return requestAnimationFrame(step);
+      recorder.stop();
+    };
+    requestAnimationFrame(step);
+  });
+}
