@@ -6,6 +6,7 @@ No algorithm lives here. Environment, set by scripts/notebooks.sh:
     ASTROLITH_FULL   1: the sizes of the thesis, for the figures kept in docs/; else small ones that take seconds
     ASTROLITH_OUT    folder of everything written    (default build/notebooks)
 """
+import importlib
 import json
 import os
 import subprocess
@@ -140,13 +141,15 @@ def needed(path):
     return path
 
 
-def package():
-    """The Python package, or the end of this notebook where it is not built."""
+def package(name="astrolith"):
+    """A Python package: ours, Debian's, or one of notebooks/requirements.txt; the end of this notebook where it is not there."""
+    # Before Debian's packages: some of theirs are too old for them.
+    sys.path[:0] = [str(folder) for folder in (OUT / "venv/lib").glob("python3*/site-packages") if str(folder) not in sys.path]
     try:
-        import astrolith
+        return importlib.import_module(name)
     except ImportError:
-        raise NotAtHand("the Python package is not at hand (-DASTROLITH_PYTHON=ON builds it)") from None
-    return astrolith
+        remedy = "-DASTROLITH_PYTHON=ON builds it" if name == "astrolith" else "scripts/notebooks.sh installs it"
+        raise NotAtHand(f"the Python package {name} is not at hand ({remedy})") from None
 
 
 def run_peer(script, *arguments, peers=False):

@@ -26,7 +26,7 @@ for option in "$@"; do
     --web) packages+=(emscripten nodejs) ;;
     --python) packages+=(python3-dev python3-venv) ;;
     --site) packages+=(doxygen libjs-katex python3-venv git) ;;
-    --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
+    --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn python3-torch libegl1) ;;
     *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;
   esac
 done
