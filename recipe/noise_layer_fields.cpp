@@ -87,7 +87,8 @@ void check_exemplar_height(const ExemplarLayer& layer, const Place& place) {
   place.field("height_range").fail("must be 0 where height_rms is not; state one of both");
 }
 
-constexpr ReliefArrangement kArrangements[] = {ReliefArrangement::kMeasured, ReliefArrangement::kLike};
+constexpr ReliefArrangement kArrangements[] = {ReliefArrangement::kMeasured, ReliefArrangement::kLaid,
+                                               ReliefArrangement::kLike};
 
 void check_relief_heights(const ReliefLayer& layer, const Place& place) {
   if (layer.high >= layer.low) return;
@@ -106,7 +107,7 @@ void check_donor(const ReliefLayer& layer, const Place& place) {
       place.field("donor_scale").fail("is about a donor; take it out, or add one");
     return;
   }
-  if (layer.arrangement != ReliefArrangement::kLike) {
+  if (layer.arrangement == ReliefArrangement::kMeasured) {
     place.field("donor").fail("has heights for places of its own; take arrangement \"like\" with it");
   }
   if (!layer.donor->operations.empty() || layer.donor->warp) {

@@ -14,10 +14,10 @@
 namespace astrolith {
 
 // Where the heights of a relief stand: each in its own place, or drawn from other places
-// (synthesis/relief/relief_likeness.h).
-enum class ReliefArrangement { kMeasured, kLike };
+// (synthesis/relief/relief_likeness.h). Heights that are only laid lack the last step of a likeness.
+enum class ReliefArrangement { kMeasured, kLaid, kLike };
 constexpr std::string_view arrangement_word(ReliefArrangement a) {
-  return a == ReliefArrangement::kLike ? "like" : "measured";
+  return a == ReliefArrangement::kMeasured ? "measured" : a == ReliefArrangement::kLaid ? "laid" : "like";
 }
 
 // Heights over the bare surface, stored at places q that follow from the body and the spacing
@@ -40,14 +40,14 @@ struct ReliefLayer : NamedImage {
   LayerSeed seed;
   LayerUse use;
   ReliefArrangement arrangement = ReliefArrangement::kMeasured;
-  // The body whose places have the heights, where it is not the recipe's own; with kLike only.
+  // The body whose places have the heights, where it is not the recipe's own; not with kMeasured.
   std::optional<MetaballBody> donor;
   // The length here of a unit of the donor, which keeps its own lengths, and with it those of this layer: its
   // places could not be found again in another unit. 1 without a donor.
   double donor_scale = 1.0;
   // The mean edge of the model that was measured, or the spacing where that is larger, length units.
   double edge = 0.0;         // 0: 1.2 spacings
-  double reach = 0.3;        // of donors with kLike, as a share of the body's diagonal
+  double reach = 0.3;        // of donors, as a share of the body's diagonal
   bool fill_unseen = false;  // whether ground that no camera saw gets patches of seen ground
   double spacing = 1.0;      // length units between lines of the lattice, > 0
   double low = 0.0;          // height of the grey value 1, length units

@@ -99,7 +99,7 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
 Layer drawn_from(const MetaballBody& measured, const Layer& layer) {
   Layer result = layer;
   if (ReliefLayer* relief = std::get_if<ReliefLayer>(&result)) {
-    relief->arrangement = ReliefArrangement::kLike;
+    if (relief->arrangement == ReliefArrangement::kMeasured) relief->arrangement = ReliefArrangement::kLaid;
     if (!relief->donor) relief->donor = measured;
   }
   return result;

@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "numerics/portable_double.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/relief/relief_donors.h"
 #include "synthesis/relief/relief_laying.h"
+#include "synthesis/relief/relief_matching.h"
 #include "synthesis/relief/relief_tiles.h"
 #include "synthesis/relief/relief_values.h"
 
@@ -17,6 +19,8 @@ namespace astrolith {
 namespace {
 
 constexpr std::size_t kFewestAnchors = 10;
+// Edges: standard deviations of the means over which the base counts as smooth.
+constexpr double kNarrowBends = 4.0, kWideBends = 14.0;
 
 void add(const std::vector<double>& heights, std::vector<double>& sum, double gain = 1.0) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * heights[i];
@@ -85,9 +89,8 @@ ReliefValues measured_blend(const ReliefPatches& patches, double spacing) {
 
 // What is narrow of the bare surface itself: the mean of (n + n_j) . (p - p_j) / 2 over the places p_j around
 // each place p, with their normals. It is 0 on spheres and, to the second order, on all surfaces without
-// narrow bends, however the places lie.
-std::vector<double> base_details(const ReliefPoints& points, double edge) {
-  constexpr double kAround = 4.0;  // edges: standard deviation of the mean
+// narrow bends, however the places lie. `around` is the standard deviation of the mean, length units.
+std::vector<double> base_details(const ReliefPoints& points, double around) {
   ThreeFields at, normals, along;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d &p = points.at(i), &n = points.normal(i);
@@ -95,9 +98,9 @@ std::vector<double> base_details(const ReliefPoints& points, double edge) {
     normals[0].push_back(n.x), normals[1].push_back(n.y), normals[2].push_back(n.z);
     along[0].push_back(dot(n, p));
   }
-  at = smoothed_fields(points, at, kAround * edge);
-  normals = smoothed_fields(points, normals, kAround * edge);
-  along[0] = smoothed_heights(points, along[0], kAround * edge);
+  at = smoothed_fields(points, at, around);
+  normals = smoothed_fields(points, normals, around);
+  along[0] = smoothed_heights(points, along[0], around);
   std::vector<double> details;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d offset = points.at(i) - Vec3d{at[0][i], at[1][i], at[2][i]},
@@ -111,9 +114,17 @@ std::vector<double> base_details(const ReliefPoints& points, double edge) {
 // of the base to places where the base has others.
 ReliefBands surface_bands(const ReliefPatches& patches, const ReliefValues& blend) {
   const double edge = patches.anchor_spacing().edge;
-  std::vector<double> heights = blend.solve(base_details(patches.points(), edge));
+  std::vector<double> heights = blend.solve(base_details(patches.points(), kNarrowBends * edge));
   add(patches.measured().heights, heights);
   return {patches.points(), heights, edge};
+}
+
+// The values of a surface at the places, as heights over a smooth one.
+std::vector<double> surface_values(const ReliefPoints& points, const ReliefValues& blend,
+                                   const std::vector<double>& heights, double edge) {
+  std::vector<double> values = blend.evaluate(heights);
+  add(base_details(points, kWideBends * edge), values);
+  return values;
 }
 
 }  // namespace
@@ -146,9 +157,16 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
   lay_patches(patches, bands.bands, points, own, ReliefDonors(patches, own, options.reach, options.fill),
               options.hash, laid);
   std::vector<double> heights = equalized(points, blend, laid, wants, apart.edge, options.fill);
-  if (foreign) return heights;
-  add(measured, heights);
-  for (const std::vector<double>& band : bands.bands) add(band, heights, -1.0);
+  if (!foreign) {
+    add(measured, heights);
+    for (const std::vector<double>& band : bands.bands) add(band, heights, -1.0);
+  }
+  if (!options.matched || options.fill) return heights;
+  const std::vector<double> whole = surface_values(measured_points, donor_blend, measured, apart.edge),
+                            drawn = surface_values(points, blend, heights, apart.edge);
+  add(matched_change({measured_points, whole}, {points, drawn}, blend, apart.edge,
+                     hash_append(options.hash, 6)),
+      heights);
   return heights;
 }
 

@@ -18,6 +18,10 @@
 //        y = u_5 + sum min(r(w_b) / r(x_b), 2) x_b
 //        h' = h - sum w_b + y on the measured body, and h' = y on another one, where w_4 holds g_5, too
 //
+// At last h' moves until small patches of the surface V h' + d are distributed as those of V h + d, now with
+// s = 14 e in d (relief_matching.h): the bends of the base that stay and the patches no longer belong
+// together.
+//
 // What is wider than all bands stays on the measured body. Its strength is a geometric mean over the body,
 // since a mean of squares would be that of few rough places. Where unseen ground is filled, places do not
 // count whose q is below 1/49 of its third quartile.
@@ -35,6 +39,7 @@ struct LikenessOptions {
   double reach = 0.3;  // how far donors are looked for at first, as a share of the body's diagonal
   bool fill = false;   // whether unseen ground (relief_patches.h) gets patches of seen ground
   std::uint32_t hash = 0;
+  bool matched = true;  // whether the last step is made (relief_matching.h); never with fill
 };
 
 // New heights h' at places of a body with their tiles, from those measured on it or, with `foreign`, on

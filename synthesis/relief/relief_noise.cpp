@@ -108,8 +108,9 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
   const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
   std::vector<double> heights = measured.heights;
   const double scale = layer.donor_scale;  // heights are in the unit of the donor
-  const LikenessOptions options{layer.reach, layer.fill_unseen, source_hash(source)};
-  if (layer.arrangement == ReliefArrangement::kLike) {
+  const LikenessOptions options{layer.reach, layer.fill_unseen, source_hash(source),
+                                layer.arrangement == ReliefArrangement::kLike};
+  if (layer.arrangement != ReliefArrangement::kMeasured) {
     heights = like_heights(ground.places, ground.tiles, patches, layer.donor.has_value(), layer.spacing,
                            options, source.place);
     const std::vector<double> own = layer.donor ? std::vector(heights.size(), 0.0) : measured.heights;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <tuple>
 
@@ -26,22 +27,87 @@ struct SortedPlaces {
   std::vector<float> x, y, z, nx, ny, nz, weight;
   std::array<std::vector<float>, kMostFields> fields;
 
-  SortedPlaces(const ReliefPoints& points, std::span<const std::vector<double>> values) {
-    const std::vector<std::uint32_t>& order = points.order();
-    for (std::vector<float>* column : {&x, &y, &z, &nx, &ny, &nz, &weight}) column->resize(order.size());
-    for (std::size_t f = 0; f < values.size(); ++f) fields[f].resize(order.size());
-    parallel_for(
-        0, static_cast<std::int64_t>(order.size()),
-        [&](std::int64_t number) {
-          const auto k = static_cast<std::size_t>(number);
-          const std::uint32_t i = order[k];
-          const Vec3f at = to_float(points.at(i)), normal = to_float(points.normal(i));
-          x[k] = at.x, y[k] = at.y, z[k] = at.z;
-          nx[k] = normal.x, ny[k] = normal.y, nz[k] = normal.z;
-          weight[k] = static_cast<float>(points.weight(i));
-          for (std::size_t f = 0; f < values.size(); ++f) fields[f][k] = static_cast<float>(values[f][i]);
-        },
-        4096);
+  SortedPlaces(std::size_t count, std::size_t num_fields) {
+    for (std::vector<float>* column : {&x, &y, &z, &nx, &ny, &nz, &weight}) column->resize(count);
+    for (std::size_t f = 0; f < num_fields; ++f) fields[f].resize(count);
+  }
+  void set(std::size_t k, const Vec3f& at, const Vec3f& normal, float w) {
+    x[k] = at.x, y[k] = at.y, z[k] = at.z;
+    nx[k] = normal.x, ny[k] = normal.y, nz[k] = normal.z;
+    weight[k] = w;
+  }
+};
+
+SortedPlaces sort_places(const ReliefPoints& points, std::span<const std::vector<double>> values) {
+  const std::vector<std::uint32_t>& order = points.order();
+  SortedPlaces sorted(order.size(), values.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(order.size()),
+      [&](std::int64_t number) {
+        const auto k = static_cast<std::size_t>(number);
+        const std::uint32_t i = order[k];
+        sorted.set(k, to_float(points.at(i)), to_float(points.normal(i)),
+                   static_cast<float>(points.weight(i)));
+        for (std::size_t f = 0; f < values.size(); ++f)
+          sorted.fields[f][k] = static_cast<float>(values[f][i]);
+      },
+      4096);
+  return sorted;
+}
+
+// The places of each cell that look along the same axis to the same side, as one. A mean much wider than a
+// cell hardly changes: weights and normals count linearly in it, and only the squared distance is that of the
+// middle.
+struct PooledPlaces {
+  SortedPlaces pools;
+  std::vector<std::uint32_t>
+      first;  // of a cell's pools, at the place of the cell in the order, and at its end
+
+  PooledPlaces(const ReliefPoints& points, std::span<const std::vector<double>> values)
+      : pools(0, values.size()), first(points.order().size() + 1, 0) {
+    for (std::size_t c = 0; c < points.cells(); ++c) {
+      first[points.first_in_cell(c)] = static_cast<std::uint32_t>(pools.x.size());
+      add_cell(points, values, points.first_in_cell(c), points.first_in_cell(c + 1));
+    }
+    first.back() = static_cast<std::uint32_t>(pools.x.size());
+  }
+
+ private:
+  static std::size_t side_of(const Vec3d& n) {
+    const double x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
+    const std::size_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    const double along = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+    return 2 * axis + (along < 0.0 ? 1 : 0);
+  }
+
+  void add_cell(const ReliefPoints& points, std::span<const std::vector<double>> values, std::uint32_t from,
+                std::uint32_t end) {
+    struct Sums {
+      double weight = 0.0;
+      Vec3d at, normal;
+      std::array<double, kMostFields> fields{};
+    };
+    std::array<Sums, 6> sides;
+    for (std::uint32_t k = from; k < end; ++k) {
+      const std::uint32_t i = points.order()[k];
+      const double weight = points.weight(i);
+      Sums& side = sides[side_of(points.normal(i))];
+      side.weight += weight;
+      side.at += weight * points.at(i);
+      side.normal += weight * points.normal(i);
+      for (std::size_t f = 0; f < values.size(); ++f) side.fields[f] += weight * values[f][i];
+    }
+    for (const Sums& side : sides) {
+      if (!(side.weight > 0.0)) continue;
+      const double by = 1.0 / side.weight;
+      const std::size_t k = pools.x.size();
+      for (std::vector<float>* column :
+           {&pools.x, &pools.y, &pools.z, &pools.nx, &pools.ny, &pools.nz, &pools.weight})
+        column->resize(k + 1);
+      pools.set(k, to_float(by * side.at), to_float(by * side.normal), static_cast<float>(side.weight));
+      for (std::size_t f = 0; f < values.size(); ++f)
+        pools.fields[f].push_back(static_cast<float>(by * side.fields[f]));
+    }
   }
 };
 
@@ -86,7 +152,10 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
                      std::size_t stride) {
   const double radius = std::sqrt(8.0) * sigma;
   const auto squared_radius = static_cast<float>(radius * radius), inverse = 1.0f / squared_radius;
-  const SortedPlaces sorted(points, fields);
+  constexpr double kWide = 1.75;  // cells: from this deviation on, pools do
+  const SortedPlaces sorted = sort_places(points, fields);
+  std::optional<PooledPlaces> pooled;
+  if (sigma >= kWide * points.cell_side()) pooled.emplace(points, fields);
   const std::vector<std::uint32_t>& order = points.order();
   ThreeFields means;
   for (std::size_t f = 0; f < fields.size(); ++f) means[f].resize(points.size());
@@ -100,7 +169,13 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
       box.extend(points.at(order[k]));
     }
     points.for_each_row(box, radius, [&](std::uint32_t from, std::uint32_t end) {
-      add_places(sorted, from, end, fields.size() == kMostFields, squared_radius, inverse, lanes);
+      const bool three = fields.size() == kMostFields;
+      if (pooled) {
+        add_places(pooled->pools, pooled->first[from], pooled->first[end], three, squared_radius, inverse,
+                   lanes);
+      } else {
+        add_places(sorted, from, end, three, squared_radius, inverse, lanes);
+      }
     });
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t place = order[first + i];

@@ -38,6 +38,7 @@ class ReliefPoints {
   // The places cell by cell. The places of a cell stand together, as order()[first_in_cell(c)] and so on.
   const std::vector<std::uint32_t>& order() const { return order_; }
   std::size_t cells() const { return cells_.size() - 1; }
+  double cell_side() const { return cell_; }  // length units
   std::uint32_t first_in_cell(std::size_t c) const { return cells_[c].first; }
 
   // Calls visit(first, end) for ranges of order() that hold all places within `radius` of the points of a
@@ -97,7 +98,8 @@ class ReliefPoints {
 };
 
 // Means of the heights around each place. The weights (1 - d^2 / R^2)^4 with R = sqrt(8) sigma have the
-// standard deviation sigma (length units) along an axis, nearly.
+// standard deviation sigma (length units) along an axis, nearly. In wide means the places of a cell count as
+// one.
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma);
 

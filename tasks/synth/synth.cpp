@@ -47,7 +47,7 @@ struct SynthOptions {
   MembersRequest members;
   FinishOptions finish;
   DrawOptions draw;
-  bool like = false;  // whether reliefs are drawn anew
+  bool like = false, laid = false;  // whether reliefs are drawn anew
   bool fill_unseen = false;
   std::string count;  // of bodies, an option that --members replaces
   int finer = 0;      // levels of reliefs below their models
@@ -91,9 +91,14 @@ void declare_options(Job& job, SynthOptions& options) {
       .placeholder("WHAT");
   declare_draw_options(job, options.draw);
   declare_finish_options(job, options.finish);
-  job.options.add_flag("--like", options.like,
-                       "another body of the kind: the measured heights of the recipe's relief are drawn for "
-                       "other places, patch by patch; every --seed gives another one");
+  job.options.add_flag(
+      "--like", options.like,
+      "another body of the kind: the measured heights of the recipe's relief are drawn for "
+      "other places, patch by patch, and moved until small patches are distributed as on the "
+      "measured surface; every --seed gives another one");
+  Option laid = job.options.add_flag("--laid", options.laid,
+                                     "as --like without its last step, the moves, in a third of the time");
+  laid.excludes(job.options.option("--like"));
   job.options.add_flag("--fill-unseen", options.fill_unseen,
                        "ground that no camera saw, which the model has smooth, gets patches of the ground "
                        "that was seen");
@@ -199,9 +204,11 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
                          parse_base_lengths(options.base_lengths));
   }
-  if (options.like) {
-    change_reliefs(recipe, options.recipe, "--like draws for other places",
-                   [](ReliefLayer& relief) { relief.arrangement = ReliefArrangement::kLike; });
+  if (options.like || options.laid) {
+    const ReliefArrangement arrangement = options.like ? ReliefArrangement::kLike : ReliefArrangement::kLaid;
+    change_reliefs(recipe, options.recipe,
+                   options.like ? "--like draws for other places" : "--laid draws for other places",
+                   [&](ReliefLayer& relief) { relief.arrangement = arrangement; });
   }
   if (options.fill_unseen) {
     change_reliefs(recipe, options.recipe, "--fill-unseen fills",

@@ -100,7 +100,7 @@ TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
   measured.layers = {heights};
   const Recipe laid = lay_on_base(measured, "measured", ball("m", 700.0), "base");
   const auto& relief = std::get<ReliefLayer>(laid.layers.back());
-  EXPECT_EQ(relief.arrangement, ReliefArrangement::kLike);
+  EXPECT_EQ(relief.arrangement, ReliefArrangement::kLaid);
   ASSERT_TRUE(relief.donor);
   EXPECT_EQ(relief.donor->spheres[0].radius, 1.0);  // the donor keeps its unit
   EXPECT_EQ(relief.donor_scale, 1000.0);

@@ -5,9 +5,14 @@
 #include <utility>
 
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/relief/patch_features.h"
+#include "synthesis/relief/patch_samples.h"
 #include "synthesis/relief/relief_donors.h"
 #include "synthesis/relief/relief_patches.h"
+#include "synthesis/relief/relief_values.h"
+#include "synthesis/relief/sliced_transport.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
@@ -147,6 +152,109 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
       like_heights(places, tiles, rough.patches(), true, kSpacing, {}, "test");
   ASSERT_EQ(heights.size(), places.size());
   EXPECT_NEAR(std::sqrt(mean_square(heights) / mean_square(rough.heights)), 1.0, 0.3);
+}
+
+// Rows of numbers with a mean and correlated columns, some of them skewed.
+std::vector<float> skewed_rows(std::size_t n, float mean, float slope, std::uint64_t seed) {
+  CounterRandom random(seed, 1);
+  std::vector<float> rows;
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto a = static_cast<float>(random.normal()), b = static_cast<float>(random.normal());
+    rows.insert(rows.end(), {mean + a, slope * a + 0.5f * b, slope * a * a});
+  }
+  return rows;
+}
+
+// The mean of one column, and of the product of two.
+std::pair<double, double> moments(const std::vector<float>& rows, std::size_t first, std::size_t second) {
+  double mean = 0.0, product = 0.0;
+  for (std::size_t r = 0; r < rows.size(); r += 3)
+    mean += double{rows[r + first]}, product += double{rows[r + first]} * double{rows[r + second]};
+  const double n = static_cast<double>(rows.size()) / 3.0;
+  return {mean / n, product / n};
+}
+
+TEST(SlicedTransport, MovesRowsUntilTheyAreDistributedAsMeasured) {
+  const std::vector<float> measured = skewed_rows(3000, 2.0f, 1.5f, 1);
+  const SlicedTransport transport(measured, 3, 0.0);
+  std::vector<float> rows = skewed_rows(2000, -1.0f, 0.2f, 2);
+  for (std::uint32_t step = 0; step < 40; ++step) {
+    const std::vector<float> changes = transport.changes(rows, step);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] += changes[i];
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      EXPECT_NEAR(moments(rows, a, b).first, moments(measured, a, b).first, 0.05);
+      EXPECT_NEAR(moments(rows, a, b).second, moments(measured, a, b).second, 0.2);
+    }
+  }
+}
+
+TEST(SlicedTransport, WantsNothingOfRowsThatHaveNoSpread) {
+  const SlicedTransport transport(std::vector<float>(300, 1.0f), 3, 0.0);
+  EXPECT_EQ(transport.changes({5.0f, 6.0f, 7.0f}, 1), std::vector<float>(3, 0.0f));
+}
+
+std::vector<float> random_patches(std::size_t n, std::uint64_t seed) {
+  CounterRandom random(seed, 1);
+  std::vector<float> patches(n * PatchFeatures::kSamples);
+  for (float& value : patches) value = static_cast<float>(random.normal());
+  return patches;
+}
+
+TEST(PatchFeatures, HaveTheGradientOfTheirDifferences) {
+  const PatchFeatures features(random_patches(40, 1), 7);
+  std::vector<float> patch = random_patches(1, 2), by(PatchFeatures::kColumns);
+  for (std::size_t j = 0; j < by.size(); ++j) by[j] = 0.1f * static_cast<float>(j % 5) - 0.2f;
+  const auto sum = [&] {
+    const std::vector<float> values = features.of(patch);
+    double total = 0.0;
+    for (std::size_t j = 0; j < by.size(); ++j) total += double{by[j]} * double{values[j]};
+    return total;
+  };
+  const std::vector<float> gradient = features.gradient(patch, by);
+  constexpr float kStep = 5e-3f;
+  for (std::size_t k = 3; k < PatchFeatures::kSamples; k += 41) {
+    const float at = patch[k];
+    patch[k] = at + kStep;
+    const double above = sum();
+    patch[k] = at - kStep;
+    const double below = sum();
+    patch[k] = at;
+    EXPECT_NEAR(gradient[k], (above - below) / (2.0 * double{kStep}), 3e-3);
+  }
+}
+
+TEST(PatchSamples, LeaveOutWhatAQuadricHasAndGiveBackMeans) {
+  const Rough rough(testing::sphere_recipe(0.4));
+  const ReliefPoints points(rough.places, kSpacing);
+  const PatchSamples samples(points, {8, kEdge, kEdge}, 300, 5);
+  EXPECT_GT(samples.patches(), 280u);
+  std::vector<double> slope;
+  for (std::size_t i = 0; i < points.size(); ++i) slope.push_back(1.0 + points.at(i).x + points.at(i).y);
+  const std::vector<float> left = samples.of(slope, 1.0);
+  EXPECT_LT(mean_square({left.begin(), left.end()}), 1e-5);
+  const std::vector<double> means =
+      PlaceMeans(samples, points.size()).of(std::vector<float>(samples.patches() * 64, 3.0f));
+  for (const double mean : means) ASSERT_TRUE(mean == 0.0 || std::fabs(mean - 3.0) < 1e-5);
+}
+
+TEST(ReliefLikeness, MatchesThePatchesOfTheMeasuredSurface) {
+  const Rough rough(testing::sphere_recipe(0.4));
+  const ReliefPoints points(rough.places, kSpacing);
+  const ReliefValues blend(points, ReliefShares(rough.places, rough.tiles, kSpacing));
+  const PatchSamples samples(points, {8, kEdge, kEdge}, 2000, 9);
+  const SlicedTransport transport(samples.of(blend.evaluate(rough.heights), 1.0 / kEdge), 64, 1e-4);
+  const auto distance = [&](bool matched) {
+    const std::vector<double> heights = like_heights(rough.places, rough.tiles, rough.patches(), false,
+                                                     kSpacing, {0.3, false, 4, matched}, "test");
+    const std::vector<float> patches = samples.of(blend.evaluate(heights), 1.0 / kEdge);
+    double sum = 0.0;
+    for (std::uint32_t hash = 0; hash < 4; ++hash)
+      for (const float change : transport.changes(patches, hash)) sum += double{change} * double{change};
+    return sum;
+  };
+  EXPECT_LT(distance(true), 0.7 * distance(false));
 }
 
 // A base that no line of the lattice meets has no places.
