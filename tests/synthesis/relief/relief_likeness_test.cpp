@@ -231,7 +231,8 @@ TEST(PatchSamples, LeaveOutWhatAQuadricHasAndGiveBackMeans) {
   const PatchSamples samples(points, {8, kEdge, kEdge}, 300, 5);
   EXPECT_GT(samples.patches(), 280u);
   std::vector<double> slope;
-  for (std::size_t i = 0; i < points.size(); ++i) slope.push_back(1.0 + 0.2 * points.at(i).x + 0.2 * points.at(i).y);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    slope.push_back(1.0 + 0.2 * points.at(i).x + 0.2 * points.at(i).y);
   const std::vector<float> left = samples.of(slope, 1.0);
   EXPECT_LT(mean_square({left.begin(), left.end()}), 2e-6);
   const std::vector<double> means =
