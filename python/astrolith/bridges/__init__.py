@@ -1,4 +1,4 @@
-"""Bodies in other packages' terms: trimesh, PyVista, Open3D, PyTorch, xarray, GeoTIFF, SPICE, USD, SDF, URDF, MJCF.
+"""Bodies in other packages' terms: trimesh, PyVista, Open3D, PyTorch, xarray, GeoTIFF, SPICE, USD, SDF, URDF, MJCF, PDS4, Croissant.
 
 Nothing of these packages is loaded before a function needs it. Each is an optional extra, such as
 ``pip install astrolith[trimesh]``; a function whose package is missing raises an ImportError that says so.
@@ -7,6 +7,7 @@ Nothing of these packages is loaded before a function needs it. Each is an optio
 from __future__ import annotations
 
 from astrolith.bridges.collision import convex_parts, hull, write_collision, write_model
+from astrolith.bridges.data_card import write_data_card
 from astrolith.bridges.datasets import Bodies, torch_dataset, torch_loader
 from astrolith.bridges.finished_set import FinishedSet
 from astrolith.bridges.geo import to_xarray, write_geotiff
@@ -18,6 +19,7 @@ from astrolith.bridges.meshes import (
     to_pyvista,
     to_trimesh,
 )
+from astrolith.bridges.pds4 import write_pds4_label
 from astrolith.bridges.points import read_points
 from astrolith.bridges.shapes import shape_harmonics
 from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
@@ -41,9 +43,11 @@ __all__ = [
     "torch_dataset",
     "torch_loader",
     "write_collision",
+    "write_data_card",
     "write_dsk",
     "write_geotiff",
     "write_kernels",
     "write_model",
+    "write_pds4_label",
     "write_usd",
 ]

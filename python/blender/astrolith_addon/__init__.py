@@ -20,7 +20,7 @@ from bpy_extras.io_utils import ImportHelper
 bl_info = {
     "name": "Astrolith: asteroids from recipes",
     "author": "Astrolith",
-    "version": (0, 2, 0),
+    "version": (0, 3, 0),
     "blender": (3, 4, 0),
     "location": "View3D > Add > Mesh > Asteroid",
     "description": "Makes asteroids from Astrolith's recipes",
