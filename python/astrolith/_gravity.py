@@ -45,6 +45,19 @@ class Gravity:
             raise ValueError(f"{name}: points have no normals, so there is none; ask for facets or vertices")
         return self.table[:, self.columns.index(name)]
 
+    def mean(self, column: str) -> float:
+        """Return the mean of a column over the surface, weighted by area, as the program states it.
+
+        ``slope.mean()`` would count a small facet as much as a large one. Of points it is the mean of all.
+
+        Parameters
+        ----------
+        column
+            One of `columns`, such as "slope_deg".
+        """
+        stated = self.figures["values"].get(column)
+        return float(self._column(column).mean() if stated is None else stated["mean"])
+
     @property
     def points(self) -> npt.NDArray[np.float64]:
         """(n, 3) positions in the body's unit."""

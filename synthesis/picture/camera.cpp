@@ -107,6 +107,17 @@ Camera view_from(const Vec3d& direction) {
   return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
 }
 
+std::vector<Camera> map_views(MapProjection projection) {
+  std::vector<Camera> views;
+  for (const double from : {1.0, -1.0}) {
+    Camera camera = view_from({from, 0, 0});
+    camera.map = projection;
+    views.push_back(camera);
+  }
+  if (projection == MapProjection::kEquirectangular) views.pop_back();
+  return views;
+}
+
 std::vector<Camera> standard_views() {
   return {
       {{1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}}, {{1.0, -1.2, 0.8}, {0, 0, 1}}};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "synthesis/picture/map_projection.h"
 
 namespace astrolith {
 
@@ -26,6 +27,9 @@ struct Camera {
   double distance = 0.0;
   bool in_radii = false;
   std::optional<Vec3d> target = std::nullopt;  // in lengths of the mesh; none: the centre of the mesh's box
+  // A map in place of a view: what is outermost in each direction from the origin of the mesh's axes, with
+  // `from` in its middle. Its light comes from the upper left everywhere, and casts no shadows.
+  MapProjection map = MapProjection::kNone;
 };
 
 // The camera that looks from a direction of any length above 0. North is up, or +y where it looks along the
@@ -35,6 +39,9 @@ Camera view_from(const Vec3d& direction);
 // The orthographic cameras from +x, from +y, from above the +z pole, and obliquely, as readers of shape
 // models expect them.
 std::vector<Camera> standard_views();
+
+// One map of all longitudes, or two of the hemispheres about the longitudes 0 and 180 degrees.
+std::vector<Camera> map_views(MapProjection projection);
 
 // The standard views; of a patch of ground, which is open and faces one way, the view from above its mean
 // plane and one obliquely.

@@ -37,8 +37,10 @@ double round_length(double most) {
 
 // A pinhole has no one scale of lengths.
 bool has_length_bar(const PreviewOptions& options) {
-  const auto is_pinhole = [](const Camera& view) { return view.field_of_view > 0.0; };
-  return options.marks.length_unit && std::none_of(options.views.begin(), options.views.end(), is_pinhole);
+  const auto has_no_scale = [](const Camera& view) {
+    return view.field_of_view > 0.0 || view.map != MapProjection::kNone;
+  };
+  return options.marks.length_unit && std::none_of(options.views.begin(), options.views.end(), has_no_scale);
 }
 
 // "slope [°]" for "slope [deg]".
@@ -107,6 +109,30 @@ class MarksPainter {
   void ring(const std::vector<std::pair<double, double>>& places, double shade) {
     page_.path(places, 1.5 * line_width(), {1.0, 0.16 + 0.78 * std::clamp(shade, 0.0, 1.0), 0.12});
   }
+
+  // The letter of a view in the upper left corner of its panel.
+  void letter(std::size_t view, double left, double top) {
+    const std::string words =
+        view < 26 ? fmt::format("({})", static_cast<char>('a' + view)) : fmt::format("({})", view + 1);
+    page_.text(left + 0.6 * size_, top + 1.5 * size_, words, 1.3 * size_, Figure::Align::kLeft, true, ink_);
+  }
+
+  // A meridian or a parallel of a map, as far as the map has it.
+  void map_line(const std::vector<std::pair<double, double>>& places) {
+    page_.path(places, 0.6 * line_width(), {0.5, 0.5, 0.5});
+  }
+  void degrees(double x, double y, const std::string& words, Figure::Align align) {
+    page_.text(x, y, words, 0.8 * size_, align, false, ink_);
+  }
+  // On the map itself: light, with a dark edge, so that one reads them on every colour.
+  void degrees_on_map(double x, double y, const std::string& words) {
+    const double edge = 0.08 * size_;
+    for (const auto& [dx, dy] :
+         {std::pair(-edge, 0.0), std::pair(edge, 0.0), std::pair(0.0, -edge), std::pair(0.0, edge)})
+      page_.text(x + dx, y + dy, words, 0.8 * size_, Figure::Align::kLeft, false, {0.05, 0.05, 0.05});
+    page_.text(x, y, words, 0.8 * size_, Figure::Align::kLeft, false, {1.0, 1.0, 1.0});
+  }
+  double letters_high() const { return size_; }
 
   // The axes of the mesh as a view sees them, in the lower left corner of its panel.
   void axes(const ViewCamera& camera, double left, double bottom, double panel_height) {
@@ -185,6 +211,81 @@ void draw_ring(MarksPainter& painter, const PlaceRing& ring, std::size_t view, c
   end_line();
 }
 
+Vec3d at_degrees(double longitude, double latitude) {
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  const portable::SineCosine a = portable::sine_and_cosine(kRadians * longitude),
+                             b = portable::sine_and_cosine(kRadians * latitude);
+  return {b.cosine * a.cosine, b.cosine * a.sine, b.sine};
+}
+
+std::string longitude_words(int degrees) {
+  const int turned = degrees > 180 ? degrees - 360 : degrees;
+  return turned == 0 || turned == 180 || turned == -180
+             ? fmt::format("{}\u00b0", std::abs(turned))
+             : fmt::format("{}\u00b0{}", std::abs(turned), turned > 0 ? "E" : "W");
+}
+
+std::string latitude_words(int degrees) {
+  return degrees == 0 ? "0\u00b0" : fmt::format("{}\u00b0{}", std::abs(degrees), degrees > 0 ? "N" : "S");
+}
+
+// Lines of longitude and latitude over a map, every 30 degrees, and their degrees beside it.
+class Graticule {
+ public:
+  Graticule(MarksPainter& painter, const PreviewRays& rays, std::size_t view)
+      : painter_(painter), rays_(rays), view_(view) {}
+
+  void draw() const {
+    const Vec3d& from = rays_.camera(view_).from;
+    const int middle = from.x < 0.0 ? 180 : 0, half = is_hemisphere() ? 90 : 180;
+    for (int longitude = middle - half; longitude <= middle + half; longitude += kStep) {
+      // A map's edge belongs to it, whatever the rounding.
+      const double inside = std::clamp<double>(longitude, middle - half + kEdge, middle + half - kEdge);
+      line([&](double t) { return at_degrees(inside, 90.0 * t); });
+      label(at_degrees(inside, is_hemisphere() ? 0.0 : -90.0), longitude_words(longitude), is_hemisphere());
+    }
+    for (int latitude = -90 + kStep; latitude < 90; latitude += kStep) {
+      line([&](double t) { return at_degrees(middle + (half - kEdge) * t, latitude); });
+      const auto at = rays_.on_map(view_, at_degrees(middle - half + kEdge, latitude));
+      if (at) {
+        painter_.degrees(at->first - 0.4 * painter_.letters_high(),
+                         at->second + 0.3 * painter_.letters_high(), latitude_words(latitude),
+                         Figure::Align::kRight);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kStep = 30;
+  static constexpr double kEdge = 1e-6;  // degrees
+
+  bool is_hemisphere() const { return rays_.camera(view_).map == MapProjection::kHemisphere; }
+
+  template <typename Place>
+  void line(const Place& place) const {
+    constexpr int kParts = 90;
+    std::vector<std::pair<double, double>> places;
+    for (int k = -kParts; k <= kParts; ++k) {
+      const auto at = rays_.on_map(view_, place(static_cast<double>(k) / kParts));
+      if (at) places.push_back(*at);
+    }
+    if (places.size() > 1) painter_.map_line(places);
+  }
+
+  // Below a place; on a hemisphere over its equator, where longitudes part.
+  void label(const Vec3d& direction, const std::string& words, bool above) const {
+    const auto at = rays_.on_map(view_, direction);
+    if (!at) return;
+    const double size = painter_.letters_high();
+    if (above) return painter_.degrees_on_map(at->first + 0.2 * size, at->second - 0.25 * size, words);
+    painter_.degrees(at->first, at->second + 1.1 * size, words, Figure::Align::kCenter);
+  }
+
+  MarksPainter& painter_;
+  const PreviewRays& rays_;
+  std::size_t view_;
+};
+
 }  // namespace
 
 int marks_height(const PreviewOptions& options) {
@@ -208,8 +309,13 @@ Figure draw_marks(const RgbaImage16& image, const PreviewOptions& options, const
       const auto at = rays.seen_at(view, scene.to_unit(label.place), scene);
       if (at) painter.label(at->first, at->second, label.text);
     }
-    if (!marks.axes) continue;
     const auto [left, bottom] = rays.lower_left(view);
+    if (marks.letters) painter.letter(view, left, bottom - rays.panel_height());
+    if (!marks.axes) continue;
+    if (rays.camera(view).map != MapProjection::kNone) {
+      Graticule(painter, rays, view).draw();
+      continue;
+    }
     painter.axes(rays.camera(view), left, bottom, rays.panel_height());
   }
   if (has_length_bar(options)) painter.length_bar(rays.pixel() / scene.scale(), *marks.length_unit);

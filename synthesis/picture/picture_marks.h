@@ -52,7 +52,8 @@ struct PictureMarks {
   std::optional<std::string> length_unit;
   std::vector<PlaceLabel> labels;
   std::vector<PlaceRing> rings;
-  bool axes = false;  // x, y and z in a corner of each view that shows nothing else
+  bool axes = false;     // x, y and z in a corner of each view that shows nothing else; the degrees of maps
+  bool letters = false;  // (a), (b) ... in the upper left corners of the views
 };
 
 // Rows below the views that the marks take of a picture: none where nothing stands there, and for pictures

@@ -39,7 +39,24 @@ float fraction(double x) { return static_cast<float>(x - std::floor(x)); }
 struct Sun {
   Vec3f direction;      // unit vector
   Vec3f first, second;  // across the sun's disk, as long as its apparent radius
+  bool casts_shadows = true;
 };
+
+// The sun of a place on a map: from the upper left, whatever the place.
+Sun map_sun(const Vec3f& outwards) {
+  const Vec3f across{-outwards.y, outwards.x, 0.0f};
+  const float length = norm(across);
+  const Vec3f east = length > 1e-6f ? (1.0f / length) * across : Vec3f{0.0f, 1.0f, 0.0f};
+  return {normalized(cross(outwards, east) - east + 1.4f * outwards), {}, {}, false};
+}
+
+// What is left of light where colours stand for numbers: some relief, and a darker outline, so that a colour
+// is nearly the one of the bar.
+float faint_relief(float incidence, float facing) {
+  const float relief = 0.86f + 0.14f * std::clamp(incidence, 0.0f, 1.0f),
+              outline = std::min(1.0f, 0.7f + facing);
+  return relief * outline;
+}
 
 Sun make_sun(const ViewCamera& camera, const PreviewOptions& options) {
   const Vec3d sun = normalized(options.sun.direction);
@@ -152,7 +169,8 @@ class Painter {
     const RayHit hit = scene_.first_hit(ray.origin, ray.direction);
     if (!hit.found) return {};
     const Vec3f point = ray.origin + hit.distance * ray.direction;
-    return {shade(-ray.direction, suns_[*view], point, hit, place), 1.0f};
+    const bool is_map = rays_.camera(*view).map != MapProjection::kNone;
+    return {shade(-ray.direction, is_map ? map_sun(-ray.direction) : suns_[*view], point, hit, place), 1.0f};
   }
 
   Vec3f shade(const Vec3f& to_viewer, const Sun& sun, const Vec3f& point, const RayHit& hit,
@@ -165,6 +183,8 @@ class Painter {
                              ? kNeutralAlbedo
                              : interpolate_corners(mesh_, options_.vertex_colors, hit);
     const float facing = std::max(0.0f, dot(mapped.normal, to_viewer));
+    if (options_.colors_are_values && !options_.keep_radiance)
+      return faint_relief(dot(mapped.normal, sun.direction), facing) * albedo;
     const Vec3f start = lifted(point, hit, face);
     return albedo * (sunlight(sun, start, mapped.normal, to_viewer, place) + mapped.open * ambient(facing));
   }
@@ -189,7 +209,7 @@ class Painter {
     const float incidence = dot(normal, sun.direction), facing = std::max(0.0f, dot(normal, to_viewer));
     if (incidence <= 0.0f) return 0.0f;
     const Vec3f towards = normalized(sun.direction + place.sun_x * sun.first + place.sun_y * sun.second);
-    if (scene_.occluded(start, towards)) return 0.0f;
+    if (sun.casts_shadows && scene_.occluded(start, towards)) return 0.0f;
     const float cos_phase = dot(to_viewer, sun.direction);
     return options_.keep_radiance ? radiance_factor(options_.reflectance, incidence, facing, cos_phase)
                                   : pictured_reflectance(options_.reflectance, incidence, facing, cos_phase);

@@ -57,6 +57,9 @@ struct PreviewOptions {
   // The linear-light albedo (sRGB components in [0, 1], colormap.h) at each vertex, or empty for neutral
   // grey.
   std::vector<Vec3<float>> vertex_colors;
+  // Whether colours stand for numbers: they are nearly those of the bar then, with a faint relief and without
+  // shadows.
+  bool colors_are_values = false;
   SurfaceMaps maps;  // none: the mesh as it is
   // Whether the picture is also kept as I/F: the law itself in place of what is pictured of it, times the
   // albedo, without ambient light.

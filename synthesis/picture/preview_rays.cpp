@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFilled = 0.92;          // share of a panel that the largest view spans
 constexpr double kLeastPixel = 1e-9;      // in the unit ball, of a mesh without extent
+constexpr double kMapFilled = 0.84;       // share of a panel that a map spans, beside its degrees
 constexpr double kOrthographicFar = 2.0;  // from the ball's centre to where orthographic rays begin
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
@@ -112,10 +113,16 @@ PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options
       height_(options.height - marks_height(options)),
       columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
       rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_),
-      pixel_(kLeastPixel) {
+      pixel_(kLeastPixel),
+      origin_(scene.to_unit({0, 0, 0})) {
   for (const Camera& view : options.views) {
     ViewCamera camera = oriented(view);
-    if (view.field_of_view > 0.0) {
+    camera.map = view.map;
+    if (view.map != MapProjection::kNone) {
+      if (!(norm(origin_) < 1.0))
+        throw InputError(
+            "preview: the origin of the mesh's axes lies beside it, so that it has no longitudes");
+    } else if (view.field_of_view > 0.0) {
       place_pinhole(view, scene, mesh, panel_width(), panel_height(), camera);
     } else {
       place_orthographic(view, scene, mesh, camera);
@@ -149,7 +156,32 @@ std::optional<std::size_t> PreviewRays::view_at(double px, double py) const {
   const int column = std::min(columns_ - 1, static_cast<int>(px / panel_width()));
   const int row = std::min(rows_ - 1, static_cast<int>(py / panel_height()));
   const auto view = static_cast<std::size_t>(row * columns_ + column);
-  return view < cameras_.size() ? std::optional(view) : std::nullopt;
+  if (view >= cameras_.size()) return std::nullopt;
+  if (cameras_[view].map != MapProjection::kNone && !map_direction_at(view, px, py)) return std::nullopt;
+  return view;
+}
+
+double PreviewRays::map_half() const {
+  const MapProjection map = cameras_[0].map;
+  return 0.5 * kMapFilled * std::min(panel_height(), panel_width() / map_width(map));
+}
+
+std::optional<Vec3d> PreviewRays::map_direction_at(std::size_t view, double px, double py) const {
+  const ViewCamera& camera = cameras_[view];
+  const Vec3d offset = (1.0 / map_half()) * across(view, px, py);
+  const auto d = map_direction(camera.map, dot(offset, camera.right), dot(offset, camera.up));
+  if (!d) return std::nullopt;
+  return d->x * camera.from + d->y * camera.right + d->z * camera.up;
+}
+
+std::optional<std::pair<double, double>> PreviewRays::on_map(std::size_t view, const Vec3d& direction) const {
+  const ViewCamera& camera = cameras_[view];
+  const auto place = map_place(
+      camera.map, {dot(direction, camera.from), dot(direction, camera.right), dot(direction, camera.up)});
+  if (!place) return std::nullopt;
+  const auto [left, bottom] = lower_left(view);
+  return std::pair(left + 0.5 * panel_width() + map_half() * place->first,
+                   bottom - 0.5 * panel_height() - map_half() * place->second);
 }
 
 Vec3d PreviewRays::across(std::size_t view, double px, double py) const {
@@ -166,6 +198,10 @@ Vec3d PreviewRays::on_plane(std::size_t view, double px, double py) const {
 
 PictureRay PreviewRays::ray(std::size_t view, double px, double py) const {
   const ViewCamera& camera = cameras_[view];
+  if (camera.map != MapProjection::kNone) {
+    const Vec3d outwards = map_direction_at(view, px, py).value_or(camera.from);
+    return {to_float(origin_ + kOrthographicFar * outwards), to_float(-outwards), 0.0};
+  }
   const Vec3d offset = camera.pixel * across(view, px, py);
   if (!camera.is_pinhole) return {to_float(camera.eye + offset), to_float(-camera.from), 0.0};
   const Vec3d direction = normalized(offset - camera.from);
@@ -178,6 +214,11 @@ std::optional<std::pair<double, double>> PreviewRays::seen_at(std::size_t view, 
                                                               const RayScene& scene) const {
   constexpr double kLifted = 1e-3;  // above the surface that the point lies on
   const ViewCamera& camera = cameras_[view];
+  if (camera.map != MapProjection::kNone) {
+    const Vec3d outwards = normalized(point - origin_);
+    if (scene.occluded(to_float(point + kLifted * outwards), to_float(outwards))) return std::nullopt;
+    return on_map(view, point - origin_);
+  }
   const Vec3d offset = point - camera.eye;
   const double depth = -dot(offset, camera.from);
   if (!(depth > 0.0)) return std::nullopt;

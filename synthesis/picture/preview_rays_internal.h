@@ -29,6 +29,7 @@ struct ViewCamera {
   // The pinhole, or the middle of the plane on which the rays of an orthographic camera begin.
   Vec3d eye;
   bool is_pinhole = false;
+  MapProjection map = MapProjection::kNone;
   // The half sides of the mesh's box in the picture plane of an orthographic camera.
   double half_width = 0, half_height = 0;
   // The side of a pixel: a length, or for a pinhole the tangent of an angle.
@@ -52,6 +53,10 @@ class PreviewRays {
   std::optional<std::pair<double, double>> seen_at(std::size_t view, const Vec3d& point,
                                                    const RayScene& scene) const;
   const ViewCamera& camera(std::size_t view) const { return cameras_[view]; }
+  // Where a map shows a direction from the origin, in the axes of the mesh.
+  std::optional<std::pair<double, double>> on_map(std::size_t view, const Vec3d& direction) const;
+  // Pixels of a map from its middle to its upper edge.
+  double map_half() const;
   // The side of a pixel of the orthographic views in the unit ball, and of a plane before each pinhole.
   double pixel() const { return pixel_; }
   // The point of that plane at a place of the picture.
@@ -66,6 +71,8 @@ class PreviewRays {
   }
 
  private:
+  // The direction from the origin that a map shows at a place of the picture.
+  std::optional<Vec3d> map_direction_at(std::size_t view, double px, double py) const;
   // A place of the picture from the middle of its view, in pixels.
   Vec3d across(std::size_t view, double px, double py) const;
 
@@ -73,6 +80,7 @@ class PreviewRays {
   int columns_, rows_;
   std::vector<ViewCamera> cameras_;  // one a view
   double pixel_;
+  Vec3d origin_;  // of the mesh's axes in the unit ball, for maps
 };
 
 // Interpolates a value at the corners of the triangle that was hit.

@@ -123,7 +123,7 @@ void color_by(Job& job, const Arguments& a, PreviewOptions& options) {
   if (!a.range.empty()) range.low = a.range[0], range.high = a.range[1];
   options.vertex_colors = sequential_colors(values, range.low, range.high);
   options.marks.values = {range.low, range.high, a.title.empty() ? column_title(a.color) : a.title};
-  if (job.options.option("--ambient").count() == 0) options.ambient = 0.5;  // keeps colours readable
+  options.colors_are_values = true;
   job.summary["range"] = {range.low, range.high};
   job.say(fmt::format("{}: {}; colours from {:.4g} to {:.4g} of {:.4g} to {:.4g}", a.output.string(), a.color,
                       range.low, range.high, range.least, range.most));

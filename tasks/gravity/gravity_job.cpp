@@ -275,7 +275,6 @@ void add_options(Job& job, Arguments& a) {
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(
           {"slope_deg", "elevation_m", "potential_J_kg", "geopotential_J_kg", "effective_gravity_m_s2"}));
-  a.look.ambient = 0.5;  // keeps colours readable in the shadows
   a.look.add_to(app);
 }
 

@@ -175,10 +175,11 @@ void write_gravity_preview(const Job& job, const GravityBody& body, const Gravit
   PreviewOptions options = look.options(job, body.mesh, body.unit);
   options.vertex_colors = sequential_colors(values, range.low, range.high);
   options.marks.values = {range.low, range.high, column_title(column.name)};
+  options.colors_are_values = true;
   paint_sites(body.mesh, sites, options.vertex_colors);
   for (std::size_t i = 0; i < sites.size() && !look.no_marks; ++i)
     options.marks.labels.push_back({sites[i].center, std::to_string(i + 1)});
-  if (!sites.empty() && look.cameras.empty() && look.views.empty()) options.views = views_from_above(sites);
+  if (!sites.empty() && !PictureOptions::chooses_view(job)) options.views = views_from_above(sites);
   look.write(job, render_picture(body.mesh, options, job.progress("preview")), file);
   job.say(
       fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",

@@ -12,9 +12,11 @@
 namespace astrolith {
 namespace {
 
-constexpr const char* kPictureOptions[] = {"--picture-size", "--picture-bits", "--camera",  "--view",
-                                           "--sun",          "--sun-body",     "--phase",   "--reflectance",
-                                           "--ambient",      "--background",   "--no-marks"};
+constexpr const char* kPictureOptions[] = {
+    "--picture-size", "--picture-bits", "--camera",     "--view",     "--sun", "--sun-body", "--phase",
+    "--reflectance",  "--ambient",      "--background", "--no-marks", "--map", "--letters"};
+
+constexpr int kMapHeight = 760;  // of 1280 pixels across: a map is as wide as two squares
 
 Vec3d to_vector(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
@@ -57,6 +59,14 @@ void PictureOptions::add_to(OptionTable& app) {
                  "look from this direction, along parallel lines; may be given several times")
       .placeholder("X Y Z")
       .default_text("");
+  app.add_option(
+         "--map", map,
+         "a map in place of views: equirectangular, all longitudes and latitudes, or hemispheres, two "
+         "by Lambert's projection, which keeps areas. Shows what is outermost in each direction from "
+         "the origin, lit from the upper left, with lines every 30 degrees")
+      .check(one_of({"equirectangular", "hemispheres"}))
+      .placeholder("PROJECTION")
+      .default_text("");
   app.add_option("--sun", sun, "towards the sun, in the axes of each view: right, up, to the viewer")
       .placeholder("X Y Z (default -0.75 0.45 0.55)")
       .default_text("");
@@ -80,7 +90,8 @@ void PictureOptions::add_to(OptionTable& app) {
       .check(in_range(0.0, 10.0));
   app.add_option("--background", background, "behind the body")
       .check(one_of({"dark", "black", "white", "transparent"}));
-  app.add_flag("--no-marks", no_marks, "without the scale of lengths and the axes");
+  app.add_flag("--no-marks", no_marks, "without the scale of lengths, the axes and the degrees of maps");
+  app.add_flag("--letters", letters, "(a), (b) ... in the corners of the views");
 }
 
 void PictureOptions::check(const Job& job, bool has_picture, const std::string& remedy) const {
@@ -96,6 +107,9 @@ void PictureOptions::check(const Job& job, bool has_picture, const std::string& 
   if (cameras.size() + views.size() > kMostViews) {
     throw InputError("--camera, --view: give at most 64 of them together");
   }
+  if (!map.empty() && (cameras.size() + views.size() > 0 || chooses_sun(job)))
+    throw InputError(
+        "--map: shows all directions, lit from the upper left; leave out --camera, --view and the sun");
   parse_cameras(cameras);
   parse_reflectance("--reflectance", reflectance);
   for (const Direction& view : views) require_direction("--view", to_vector(view));
@@ -116,6 +130,8 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
     const PixelSize pixels = picture_size(size);
     made.width = pixels.width;
     made.height = pixels.height;
+  } else if (!map.empty()) {
+    made.height = kMapHeight;
   }
   made.seed = job.seed;
   made.sun.direction = to_vector(sun);
@@ -123,11 +139,15 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
   if (!phase.empty()) made.sun = sun_at_phase(phase[0], phase[1]);
   made.views = parse_cameras(cameras);
   for (const Direction& view : views) made.views.push_back(view_from(to_vector(view)));
+  if (!map.empty())
+    made.views =
+        map_views(map == "hemispheres" ? MapProjection::kHemisphere : MapProjection::kEquirectangular);
   if (made.views.empty()) made.views = usual_views(mesh);
   made.ambient = ambient;
   made.reflectance = parse_reflectance("--reflectance", reflectance);
   made.transparent = background == "transparent";
   made.marks.axes = !no_marks;
+  made.marks.letters = letters;
   if (!no_marks) made.marks.length_unit = unit;
   if (background == "black") made.background = {0, 0, 0};
   if (background == "white") made.background = {1, 1, 1};
@@ -135,7 +155,9 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
 }
 
 bool PictureOptions::chooses_view(const Job& job) {
-  return job.options.option("--camera").count() + job.options.option("--view").count() > 0;
+  return job.options.option("--camera").count() + job.options.option("--view").count() +
+             job.options.option("--map").count() >
+         0;
 }
 
 bool PictureOptions::chooses_sun(const Job& job) {

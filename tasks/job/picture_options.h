@@ -23,7 +23,8 @@ struct PictureOptions {
   std::string reflectance = "rock", background = "dark";
   double ambient = PreviewOptions{}.ambient;
   int bits = 8;
-  bool no_marks = false;
+  bool no_marks = false, letters = false;
+  std::string map;  // equirectangular, hemispheres; empty = views
 
   void add_to(OptionTable& app);
 

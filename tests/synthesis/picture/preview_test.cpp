@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -45,6 +46,67 @@ TEST(Preview, SphereIsLitFromTheSunAndDarkBehind) {
   EXPECT_EQ(grey(image, 50, 32), 0);    // night
   EXPECT_EQ(grey(image, 1, 1), grey(image, 62, 62));
   EXPECT_LT(grey(image, 1, 1), 20);  // background
+}
+
+TEST(MapProjection, FindsPlacesAgainAndKeepsAreas) {
+  for (const MapProjection map : {MapProjection::kEquirectangular, MapProjection::kHemisphere}) {
+    for (double y = -0.95; y < 1.0; y += 0.1) {
+      for (double x = -map_width(map) + 0.05; x < map_width(map); x += 0.1) {
+        const auto direction = map_direction(map, x, y);
+        ASSERT_EQ(direction.has_value(), map == MapProjection::kEquirectangular || x * x + y * y <= 1.0);
+        if (!direction) continue;
+        EXPECT_NEAR(norm(*direction), 1.0, 1e-12);
+        const auto place = map_place(map, *direction);
+        ASSERT_TRUE(place.has_value());
+        EXPECT_NEAR(place->first, x, 1e-9);
+        EXPECT_NEAR(place->second, y, 1e-9);
+      }
+    }
+  }
+  // Half of the hemisphere's area, the cap within 60 degrees, has half of the map's.
+  const auto place = map_place(MapProjection::kHemisphere, {0.5, std::sqrt(0.75), 0.0});
+  EXPECT_NEAR(place->first, std::sqrt(0.5), 1e-12);
+  EXPECT_FALSE(map_place(MapProjection::kHemisphere, {-0.1, 1.0, 0.0}).has_value());
+}
+
+// Longitude runs to the right and latitude up, about the meridian of +x.
+TEST(Preview, MapsShowDirectionsFromTheOrigin) {
+  const TriangleMesh mesh = sphere_mesh();
+  PreviewOptions options;
+  options.width = 128, options.height = 64;
+  options.views = map_views(MapProjection::kEquirectangular);
+  options.colors_are_values = true;
+  for (const Vec3d& p : mesh.vertices)
+    options.vertex_colors.push_back(
+        {p.y > 0.3 ? 1.0f : 0.0f, p.z > 0.3 ? 1.0f : 0.0f, p.x > 0.3 ? 1.0f : 0.0f});
+  const RgbImage image = render_preview(mesh, options);
+  const auto at = [&](int x, int y) {
+    const std::uint8_t* p = &image.pixels[3 * static_cast<std::size_t>(y * image.width + x)];
+    return std::array{p[0] > 128, p[1] > 128, p[2] > 128};
+  };
+  EXPECT_EQ(at(64, 32), (std::array{false, false, true}));   // 0 degrees
+  EXPECT_EQ(at(90, 32), (std::array{true, false, false}));   // 90 degrees east
+  EXPECT_EQ(at(38, 32), (std::array{false, false, false}));  // 90 degrees west
+  EXPECT_EQ(at(64, 8), (std::array{false, true, false}));    // near the north pole
+  options.views = map_views(MapProjection::kHemisphere);
+  ASSERT_EQ(options.views.size(), 2u);
+  TriangleMesh far = mesh;
+  for (Vec3d& p : far.vertices) p.x += 5.0;
+  options.vertex_colors.clear();
+  EXPECT_THROW(render_preview(far, options), InputError);
+}
+
+// Where colours stand for numbers, the dark side has nearly the colour of the bar.
+TEST(Preview, ColoursOfValuesAreNotShaded) {
+  PreviewOptions options = one_view();
+  options.sun.direction = {-1, 0, 0.2};
+  const TriangleMesh mesh = sphere_mesh();
+  options.vertex_colors.assign(mesh.vertices.size(), {0.5f, 0.5f, 0.5f});
+  options.colors_are_values = true;
+  const RgbImage image = render_preview(mesh, options);
+  const int shown = srgb_byte(0.5f);
+  EXPECT_GT(grey(image, 45, 32), 0.9 * shown);
+  EXPECT_LE(grey(image, 20, 32), shown);
 }
 
 // A patch of ground that faces +x: it is seen from there, and its shadows fall on ground that faces the
