@@ -58,7 +58,7 @@ slice_5() {
   check "benchmarks and notebooks" "scripts/build.sh ci -DASTROLITH_BENCHMARKS=ON $python
     ASTROLITH_BIN=\$PWD/build/ci/bin ASTROLITH_BUILD=\$PWD/build/ci scripts/notebooks.sh --jobs 2"
   check "the page" "scripts/setup.sh --browser && scripts/web.sh test build/ci/bin/synth"
-  check "the site" "ASTROLITH_BUILD=build/ci scripts/site.sh"
+  check "the site" "ASTROLITH_BUILD=build/ci scripts/site.sh || [[ \$? -eq 3 ]]"  # 3: no package index
   check fuzzers "scripts/setup.sh --fuzz && scripts/build.sh fuzz fuzzers"
   check "GPU code" "scripts/build.sh ci -DASTROLITH_CUDA=ON astrolith_cuda"
 }
