@@ -116,10 +116,10 @@ void declare_draw_options(Job& job, DrawOptions& options) {
       .add_option(
           "--details", options.details,
           "of a population: what lies on a drawn body. relief: the ground of the measured body that is most "
-          "like "
-          "it in size and class, laid as --like lays it, some seconds a body; laws: craters and boulders by "
-          "the "
-          "counts of a known body of its size, as --finish draws them, down to a quarter of the finest size; "
+          "like it in size and class, laid as --laid lays it, or as --like where that is given; laws: "
+          "craters "
+          "and boulders by the counts of a known body of its size, as --finish draws them, down to a quarter "
+          "of the finest size; "
           "all: both; auto: the relief where the population has any; none")
       .check(one_of({"auto", "all", "relief", "laws", "none"}));
 }
@@ -138,6 +138,7 @@ Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& mem
   if (donor != nullptr) {
     const std::filesystem::path donor_file = find_body(file).parent_path() / donor->recipe;
     recipe = lay_ground(*member.body, *donor, load_recipe(donor_file), donor_file.string());
+    if (options.like) std::get<ReliefLayer>(recipe.layers.front()).arrangement = ReliefArrangement::kLike;
     job.say("ground of " + donor->name);
   }
   if (options.details == "relief" || options.details == "auto") return recipe;

@@ -13,6 +13,7 @@ namespace astrolith {
 struct DrawOptions {
   std::string diameter, axes, kind, source, near;  // empty: as the population says
   std::string details = "auto";                    // what lies on a drawn body: --details
+  bool like = false;                               // whether its ground ends as that of --like does
 };
 
 void declare_draw_options(Job& job, DrawOptions& options);

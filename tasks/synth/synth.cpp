@@ -47,7 +47,7 @@ struct SynthOptions {
   MembersRequest members;
   FinishOptions finish;
   DrawOptions draw;
-  bool like = false, laid = false;  // whether reliefs are drawn anew
+  bool laid = false;  // whether reliefs are drawn anew, but as `draw.like` is not
   bool fill_unseen = false;
   std::string count;  // of bodies, an option that --members replaces
   int finer = 0;      // levels of reliefs below their models
@@ -92,7 +92,7 @@ void declare_options(Job& job, SynthOptions& options) {
   declare_draw_options(job, options.draw);
   declare_finish_options(job, options.finish);
   job.options.add_flag(
-      "--like", options.like,
+      "--like", options.draw.like,
       "another body of the kind: the measured heights of the recipe's relief are drawn for "
       "other places, patch by patch, and moved until small patches are distributed as on the "
       "measured surface; every --seed gives another one");
@@ -204,10 +204,12 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
                          parse_base_lengths(options.base_lengths));
   }
-  if (options.like || options.laid) {
-    const ReliefArrangement arrangement = options.like ? ReliefArrangement::kLike : ReliefArrangement::kLaid;
+  // The ground of a draw does not stand in the recipe yet.
+  if ((options.draw.like && !recipe.population) || options.laid) {
+    const ReliefArrangement arrangement =
+        options.draw.like ? ReliefArrangement::kLike : ReliefArrangement::kLaid;
     change_reliefs(recipe, options.recipe,
-                   options.like ? "--like draws for other places" : "--laid draws for other places",
+                   options.draw.like ? "--like draws for other places" : "--laid draws for other places",
                    [&](ReliefLayer& relief) { relief.arrangement = arrangement; });
   }
   if (options.fill_unseen) {

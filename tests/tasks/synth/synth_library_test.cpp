@@ -55,6 +55,8 @@ TEST_F(SynthLibrary, LaysGroundOnDrawnBodiesLong) {
   EXPECT_TRUE(made["closed"].get<bool>());
   succeed("g.astro -o again.ply --resolution 48");
   EXPECT_EQ(text("again.ply"), text("g.ply"));
+  succeed("asteroids --diameter 330 --seed 3 --like --write-recipe like.json");
+  EXPECT_NE(text("like.json").find("\"arrangement\": \"like\""), std::string::npos);
 }
 
 TEST_F(SynthLibrary, AFileComesBeforeABody) {
