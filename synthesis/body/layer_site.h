@@ -12,8 +12,8 @@
 
 namespace astrolith {
 
-// What fields of one recipe need not find twice, by the place of the layer that it belongs to, or "body": what
-// it is the layer's own room knows.
+// What fields of one recipe need not find twice, by the place of the layer that it belongs to, or "body":
+// what it is the layer's own room knows.
 using SharedWork = std::map<std::string, std::shared_ptr<void>>;
 
 // A layer's origin in its recipe.

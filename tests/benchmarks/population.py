@@ -13,7 +13,8 @@ fit_population makes the population of them (some 15 seconds of the processor fo
                the bodies that are not the farthest of the 21 from the other 20, by Mahalanobis distance
   source       the same with the kind of source given too
   surfaces     bodies drawn near one of the library, as large, with the ground that `synth` lays: whether `compare --realism`
-               takes their surface for that of the model of the body whose ground it is, and roughness by scale over its own
+               takes their surface for that of the model of the body whose ground it is, and roughness by scale over its own;
+               with --like its last step is made
   topology     of all these draws, those in one piece without handles, and how many attempts they took
   cost         seconds of the processor for a body of 20,000 triangles with one thread, and bytes of its recipe
 
@@ -218,7 +219,7 @@ def calibration(draws, shapes, judged, with_source):
     row("all", "", f"{numpy.mean(within):.2f}", f"{jointly} of {len(judged)} bodies within", "")
 
 
-def surfaces(bin, folder, models):
+def surfaces(bin, folder, models, ground):
     head("near", "donors", "ground", "passes", "largest distance", "p", "roughness by scale, over the model's")
     passed, bands = [], []
     for seed, measured in enumerate(json.loads(LIBRARY.read_text())["bodies"]):
@@ -228,7 +229,7 @@ def surfaces(bin, folder, models):
             continue
         drawn, said = folder / f"near_{name}.ply", folder / f"near_{name}.json"
         Run(bin / "synth", "asteroids", "--near", name, "--diameter", f"{metres:.6g}", "--seed", seed, "--triangles", facets,
-            "--even", "-o", drawn, "--summary", said, "--quiet")  # fmt: skip
+            "--even", "-o", drawn, "--summary", said, "--quiet", *ground)  # fmt: skip
         body = json.loads(said.read_text())["drawn_body"]
         found = Run(bin / "compare", models[body["ground"]], drawn, "--realism", "--json", "--quiet").json()["realism"]
         donors = ", ".join(f"{donor['name']} {donor['share']:.0%}" for donor in body["donors"])
@@ -243,14 +244,14 @@ def surfaces(bin, folder, models):
 
 
 def main():
-    arguments = arguments_of(__doc__, "bin", "folder", population="", draws=60, splits=4, judged=16,
+    arguments = arguments_of(__doc__, "bin", "folder", like={"action": "store_true"}, population="", draws=60, splits=4, judged=16,
                              only={"nargs": "+", "choices": ROWS, "default": ROWS})  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         files = sorted(arguments.folder.glob("*.ply"), key=lambda file: file.stat().st_size)
         models = {file.stem.split("_")[0]: file for file in files if "DEFECT" not in file.stem}
         if "surfaces" in arguments.only:
             print("surfaces")
-            surfaces(arguments.bin, pathlib.Path(folder), models)
+            surfaces(arguments.bin, pathlib.Path(folder), models, ["--like"] if arguments.like else [])
         if arguments.only == ["surfaces"]:
             return
         made = pathlib.Path(arguments.population or folder + "/population.json")
