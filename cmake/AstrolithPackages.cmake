@@ -32,7 +32,6 @@ if(ASTROLITH_ESTIMATION)
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(CGAL REQUIRED)              # repair of meshes
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
-  find_path(THREE_JS_FOLDER build/three.min.js PATHS /usr/share/javascript/three REQUIRED NO_CACHE)  # reports in 3-D (libjs-three)
 endif()
 
 # The architectures of this machine's GPUs as CMake names them, such as "90-real". Where nvidia-smi finds no GPU, the result

@@ -8,7 +8,7 @@ packages=(
   libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libcairo2-dev libzip-dev libzstd-dev zlib1g-dev
   libgtest-dev
 )
-fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libspectra-dev libcgal-dev libjs-three)
+fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev libfftw3-dev libspectra-dev libcgal-dev)
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of
 # sanitized builds, --package what makes a Debian package, --python what builds the Python package, --browser what opens the
 # pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, --engines what tests

@@ -1,4 +1,4 @@
-// Text as HTML, bytes as text, and the scripts of a page.
+// Text as HTML, bytes as text, and the script of a page.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,8 @@ std::string escaped_html(const std::string& text);
 // RFC 4648, with padding and without line breaks.
 std::string base64(std::span<const std::uint8_t> bytes);
 
-// The scripts, which the build takes into the program: see page_scripts.cpp.in.
-const char* three_script();           // three.js (MIT licence)
-const char* trackball_script();       // its TrackballControls
-const char* surface_viewer_script();  // surface_viewer.js
+// surface_viewer.js and the view that it uses, which the build takes into the program: see
+// page_scripts.cpp.in.
+const char* surface_viewer_script();
 
 }  // namespace astrolith

@@ -102,13 +102,15 @@ std::string figure_html(const TurnableSurfaces& surfaces, const std::string& id)
   check(surfaces.right);
   const SceneCube cube = cube_around(surfaces);
   const bool colored = !surfaces.left.rgb.empty() || !surfaces.right.rgb.empty();
-  std::string html =
-      "<figure class=\"turnable\" id=\"" + id + "\" hidden>\n<canvas class=\"canvas\"></canvas>\n";
+  std::string html = "<figure class=\"turnable\" id=\"" + id +
+                     "\" hidden>\n<canvas class=\"canvas\" tabindex=\"0\" aria-label=\"both surfaces; arrow "
+                     "keys turn them\"></canvas>\n";
   html += "<input class=\"slider\" type=\"range\" aria-label=\"border between the surfaces\" hidden>\n";
   html += "<div class=\"names\"><span>" + escaped_html(surfaces.left.caption) + "</span><span>" +
           escaped_html(surfaces.right.caption) + "</span></div>\n" + scale_html(surfaces);
   html +=
-      "<figcaption>Drag to turn both, and roll the wheel to come nearer.<br>\n"
+      "<figcaption>Drag to turn both, with the right button to move the sun, and roll the wheel to come "
+      "nearer.<br>\n"
       "<label><input class=\"overlaid\" type=\"checkbox\"> one over the other, with a slider between "
       "them</label>\n";
   html += std::string("<label") + (colored ? "" : " hidden") +
@@ -152,8 +154,7 @@ std::string row(const std::vector<std::string>& cells, const std::string& tag) {
 std::string turnable_surfaces_html(const std::vector<TurnableSurfaces>& pairs) {
   if (pairs.empty()) return "";
   std::string html = kStyle;
-  html += "<script>" + std::string(three_script()) + "</script>\n<script>" + trackball_script() +
-          "</script>\n<script>" + surface_viewer_script() + "</script>\n";
+  html += "<script>" + std::string(surface_viewer_script()) + "</script>\n";
   for (std::size_t i = 0; i < pairs.size(); ++i)
     html += figure_html(pairs[i], "turnable" + std::to_string(i));
   return html;

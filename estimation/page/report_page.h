@@ -30,8 +30,8 @@ struct TurnableSurfaces {
   std::string scale_caption, scale_low, scale_high;
 };
 
-// A figure of each pair for a page of HTML, with their viewer and three.js, which the page fetches from
-// nowhere; nothing without pairs. Figures stay hidden without scripts or WebGL. Throws std::invalid_argument
+// A figure of each pair for a page of HTML, with their viewer, which the page fetches from nowhere; nothing
+// without pairs. Figures stay hidden without scripts or WebGL. Throws std::invalid_argument
 // for surfaces that are empty or too large.
 std::string turnable_surfaces_html(const std::vector<TurnableSurfaces>& pairs);
 

@@ -4,87 +4,65 @@
 //   triangles  16-bit indices, three for each triangle
 //   colors     sRGB bytes, three for each vertex, or nothing: then the surface is grey
 // as base64 text of little-endian arrays. A step is 1 / 32767 of the scene's half width.
-function showSurfaces(figure, surfaces) {
+import {BodyView} from "./body_view.js";
+import {orbit} from "./orbit.js";
+
+export function showSurfaces(figure, surfaces) {
   "use strict";
   const element = name => figure.querySelector("." + name);
-  const canvas = element("canvas"), slider = element("slider"), overlaid = element("overlaid");
-  const colored = element("colored");
+  const canvas = element("canvas"), slider = element("slider"), overlaid = element("overlaid"), colored = element("colored");
   const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
 
-  function meshOf(surface) {
-    const steps = new Int16Array(bytesOf(surface.positions).buffer);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(steps, s => s / 32767), 3));
-    geometry.setIndex(new THREE.BufferAttribute(new Uint16Array(bytesOf(surface.triangles).buffer), 1));
-    geometry.computeVertexNormals();
-    if (surface.colors) {
-      geometry.setAttribute("color", new THREE.BufferAttribute(bytesOf(surface.colors), 3, true));
+  // The mean of the normals of the triangles around each vertex, by their areas.
+  function normalsOf(p, triangles) {
+    const normals = new Float32Array(p.length);
+    for (let i = 0; i < triangles.length; i += 3) {
+      const [a, b, c] = [0, 1, 2].map(k => 3 * triangles[i + k]);
+      const [u, v] = [b, c].map(q => [0, 1, 2].map(k => p[q + k] - p[a + k]));
+      const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+      for (const q of [a, b, c]) n.forEach((x, k) => { normals[q + k] += x; });
     }
-    return new THREE.Mesh(geometry);
+    return normals;
   }
 
-  let renderer;
+  // Colours with a scale stand for values, which shading must not darken.
+  function meshOf(surface) {
+    const positions = Float32Array.from(new Int16Array(bytesOf(surface.positions).buffer), step => step / 32767);
+    const triangles = Uint32Array.from(new Uint16Array(bytesOf(surface.triangles).buffer));
+    const colors = surface.colors ? bytesOf(surface.colors) : null;
+    return {positions, triangles, normals: normalsOf(positions, triangles), colors, plain: Boolean(colors && element("scale"))};
+  }
+
+  let view;
   try {
-    renderer = new THREE.WebGLRenderer({canvas: canvas, antialias: true});
+    view = new BodyView(canvas);
   } catch (error) {
     return;  // a browser without WebGL keeps the pictures below
   }
   figure.hidden = false;
-  renderer.setScissorTest(true);
-  renderer.setClearColor(0x15171c);
-  const grey = new THREE.MeshLambertMaterial({color: 0xb8b2aa, side: THREE.DoubleSide});
-  const byColor = new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide});
-  const camera = new THREE.PerspectiveCamera(30, 1, 0.05, 50);
-  camera.up.set(0, 0, 1);
-  camera.position.set(2.2, -3.6, 1.6);
-  const sun = new THREE.DirectionalLight(0xffffff, 0.95);
-  sun.position.set(-1.5, 1.2, 1);
-  camera.add(sun);  // the light keeps its side while the bodies are turned
-  const scenes = surfaces.map(surface => {
-    const scene = new THREE.Scene();
-    const mesh = meshOf(surface);
-    scene.add(mesh, new THREE.AmbientLight(0xffffff, 0.25));
-    return {scene: scene, mesh: mesh, hasColors: Boolean(surface.colors)};
-  });
-  const controls = new THREE.TrackballControls(camera, canvas);
-  controls.staticMoving = true;
-  controls.rotateSpeed = 2.5;
-  controls.noPan = true;
+  view.parallel = null;
+  view.isOpen = true;
+  view.background = [0.082, 0.09, 0.11];
+  view.fill = 0.06;
+  Object.assign(view.camera, {latitude: 24, distance: 4});
+  const meshes = surfaces.map(meshOf);
+  const radius = Math.max(...meshes.map(({positions}) => {
+    let square = 0;
+    for (let i = 0; i < positions.length; i += 3) square = Math.max(square, positions[i] ** 2 + positions[i + 1] ** 2 + positions[i + 2] ** 2);
+    return Math.sqrt(square);
+  }));
 
-  // Draws one surface in the columns left .. right of the canvas; the picture itself fills first .. last.
-  function drawColumns(view, left, right, first, last) {
-    const height = canvas.clientHeight;
-    camera.aspect = (last - first) / height;
-    camera.updateProjectionMatrix();
-    renderer.setViewport(first, 0, last - first, height);
-    renderer.setScissor(left, 0, right - left, height);
-    view.mesh.material = view.hasColors && colored.checked ? byColor : grey;
-    view.scene.add(camera);  // and its sun: a light belongs to one scene at a time
-    renderer.render(view.scene, camera);
+  function show() {
+    meshes.forEach((mesh, at) => view.setBody(at, colored.checked ? mesh : {...mesh, colors: null, plain: false}, [0, 0, 0, 1 / radius]));
   }
-
-  function draw() {
-    const width = canvas.clientWidth, middle = width / 2;
-    renderer.setPixelRatio(window.devicePixelRatio);
-    renderer.setSize(width, canvas.clientHeight, false);
+  function lay() {
     slider.hidden = !overlaid.checked;
-    if (overlaid.checked) {
-      const border = Math.round(width * slider.value / 100);
-      drawColumns(scenes[0], 0, border, 0, width);
-      drawColumns(scenes[1], border, width, 0, width);
-    } else {
-      drawColumns(scenes[0], 0, middle, 0, middle);
-      drawColumns(scenes[1], middle, width, middle, width);
-    }
+    view.overlaid = overlaid.checked ? slider.value / 100 : null;
+    view.request();
   }
-
-  function frame() {
-    controls.update();
-    window.requestAnimationFrame(frame);
-  }
-  controls.addEventListener("change", draw);
-  for (const control of [slider, overlaid, colored]) control.addEventListener("input", draw);
-  window.addEventListener("resize", () => { controls.handleResize(); draw(); });
-  draw();
-  frame();
+  colored.addEventListener("input", show);
+  for (const control of [slider, overlaid]) control.addEventListener("input", lay);
+  orbit(view, canvas);
+  show();
+  lay();
 }

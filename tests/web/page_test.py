@@ -218,6 +218,22 @@ def check_values(page):
     page.settled()
 
 
+def check_images(page, synth):
+    """A recipe is opened together with the image that it names; without it, the page says what is missing."""
+    with tempfile.TemporaryDirectory() as folder:
+        recipe = pathlib.Path(folder) / "body.json"
+        subprocess.run([synth.program, "ky26", "--write-recipe", recipe, "--quiet"], check=True)
+        image = next(pathlib.Path(folder).glob("*.png"))
+        page.driver.find_element(By.ID, "file").send_keys(str(recipe))
+        page.wait(lambda: "is a file beside the recipe" in page.text("refusal"))
+        page.driver.find_element(By.ID, "file").send_keys(f"{recipe}\n{image}")
+        page.wait(lambda: page.text("refusal") == "" and '"heights"' in page.script("return window.astrolith.recipeText()"))
+        page.set_cells(CELLS)
+        mesh = pathlib.Path(folder) / "mesh.ply"
+        subprocess.run([synth.program, recipe, "-o", mesh, "--resolution", str(CELLS), "--quiet"], check=True)
+        check(page.mesh_hash() == hashlib.sha256(mesh.read_bytes()).hexdigest(), "a recipe with its image makes another mesh")
+
+
 def check_draw(page, synth):
     """A body that is drawn on the page is the one that synth draws; each press takes the next seed."""
     page.show_tab("knobs")
@@ -407,6 +423,7 @@ def main():
         check_knobs(page, synth)
         check_values(page)
         check_mesh_beside(page, synth)
+        check_images(page, synth)
         check_draw(page, synth)
         check_layers(page)
         check_refusal(page, synth)

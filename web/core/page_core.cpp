@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -27,10 +28,41 @@ namespace {
 
 bool host_goes_on(double fraction, std::string_view) { return astrolith_host_goes_on(fraction) != 0; }
 
+// An image beside a recipe, which the host has decoded.
+struct GivenImage {
+  std::string sha256;
+  std::shared_ptr<const ExemplarImage> pixels;
+};
+std::map<std::string, GivenImage>& given_images() {
+  static std::map<std::string, GivenImage> images;  // by the names of their files, without folders
+  return images;
+}
+
+// Gives the layer its pixels, where the host has the image that it names. Pixels of a relief then lie in the
+// recipe.
+void take_image(NamedImage& named, const std::string& place) {
+  const auto found = given_images().find(std::filesystem::path(named.image).filename().string());
+  if (named.image.empty() || found == given_images().end()) return;
+  const auto& [digits, pixels] = found->second;
+  if (digits != named.image_sha256) {
+    throw InputError(place + ".image: " + named.image +
+                     " has changed since the recipe was written; restore it, or state its SHA-256 " + digits);
+  }
+  named.pixels = pixels;
+}
+
 // A recipe in the bytes of a file; no bytes are refused as require_plain_file() refuses an empty file.
 Recipe recipe_in(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw InputError(name + ": is empty; give another file");
-  return parse_recipe(bytes, name);
+  Recipe recipe = parse_recipe(bytes, name);
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    NamedImage* const named = find_image(recipe.layers[i]);
+    if (named == nullptr || named->pixels != nullptr) continue;
+    take_image(*named, name + ": layers[" + std::to_string(i) + "]");
+    if (named->pixels != nullptr && std::holds_alternative<ReliefLayer>(recipe.layers[i]))
+      named->image.clear(), named->image_sha256.clear();
+  }
+  return recipe;
 }
 
 // Refuses a recipe whose layers name files, which no page has beside it.
@@ -39,7 +71,7 @@ void require_own_pixels(const Recipe& recipe, const std::string& name) {
     const NamedImage* named = find_image(recipe.layers[i]);
     if (named == nullptr || named->pixels != nullptr) continue;
     throw InputError(name + ": layers[" + std::to_string(i) + "].image: " + named->image +
-                     " is a file beside the recipe, which this page cannot read; use synth");
+                     " is a file beside the recipe; drop the recipe together with it, or use synth");
   }
 }
 
@@ -224,6 +256,21 @@ void write_recipe_anew(std::string_view text, const std::string& name, const std
   keep_written(format == "astro" ? recipe_to_compact(recipe) : recipe_to_json(recipe));
 }
 
+void give_image(const std::string& name, std::string_view bytes, int width, int height,
+                const std::uint16_t* values, const std::uint16_t* rgb) {
+  if (std::min(width, height) < kLeastExemplarSide || std::max(width, height) > kMostExemplarSide)
+    throw InputError(name + ": is " + std::to_string(width) + " x " + std::to_string(height) +
+                     " pixels; cut out or scale it to sides of " + std::to_string(kLeastExemplarSide) +
+                     " to " + std::to_string(kMostExemplarSide));
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  auto image = std::make_shared<ExemplarImage>();
+  image->width = width;
+  image->height = height;
+  image->values.assign(values, values + pixels);
+  if (rgb != nullptr) image->rgb.assign(rgb, rgb + 3 * pixels);
+  given_images()[name] = {sha256(bytes), image};
+}
+
 void draw(std::string_view text, const std::string& name) {
   PageState& to = state();
   const Recipe recipe = recipe_in(text, name);
@@ -274,6 +321,12 @@ int astrolith_write_mesh(const char* format) {
 }
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format) {
   return astrolith::run_guarded([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
+}
+int astrolith_give_image(const char* name, const char* bytes, std::size_t count, int width, int height,
+                         const std::uint16_t* values, const std::uint16_t* rgb) {
+  return astrolith::run_guarded([&] {
+    astrolith::give_image(name, {bytes, count}, width, height, values, rgb);
+  });
 }
 int astrolith_draw(const char* recipe, std::size_t bytes, const char* name) {
   return astrolith::run_guarded([&] { astrolith::draw({recipe, bytes}, name); });

@@ -42,6 +42,13 @@ int astrolith_write_mesh(const char* format);
 // The recipe written anew: "json" with every field, or "astro". Returns a status, as astrolith_make() does.
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format);
 
+// Gives an image that recipes name, from now on: the name and the bytes of its file, and its grey values or
+// the luma of its colours (height x width, full scale is 65535), with its colours (#pixels x 3) or null.
+// Returns a status, as astrolith_make() does. The heights of a relief whose image was given are written into
+// the recipe.
+int astrolith_give_image(const char* name, const char* bytes, std::size_t count, int width, int height,
+                         const std::uint16_t* values, const std::uint16_t* rgb);
+
 // Draws a body from the population of a recipe, under its conditions and by its seed. The figures are then
 // those of the draw: its diameter, its class, and the file of the recipe whose ground lies on it, or "". The
 // drawn recipe is written as JSON, without that ground. Returns a status, as astrolith_make() does.

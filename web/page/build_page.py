@@ -32,9 +32,10 @@ def packed(content):
 def modules(file, seen=None):
     """The files of a module and of what it imports, each after those that it imports."""
     seen = [] if seen is None else seen
-    for name in re.findall(r'^import .* from "\./(.*)";$', file.read_text(), re.MULTILINE):
-        if HERE / name not in seen:
-            modules(HERE / name, seen)
+    for name in re.findall(r'^import .* from "(\..*)";$', file.read_text(), re.MULTILINE):
+        imported = (file.parent / name).resolve()
+        if imported not in seen:
+            modules(imported, seen)
     if file not in seen:
         seen.append(file)
     return seen
@@ -49,7 +50,7 @@ def joined(*files):
 
 def worker(core):
     """The core's worker is a script of the older kind."""
-    parts = [joined(HERE / name) for name in ("mesh_reading.js", "core_calls.js", "core_worker.js")]
+    parts = [joined(HERE / name) for name in ("mesh_reading.js", "png_reading.js", "core_calls.js", "core_worker.js")]
     return "\n".join([(core / "astrolith_core.js").read_text(), *parts])
 
 

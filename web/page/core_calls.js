@@ -77,6 +77,13 @@ export function coreCalls(module) {
         f => module._astrolith_write_recipe(r, recipe.length, n, f)))));
       return written();
     },
+    // An image that recipes name: the bytes of its file, and its pixels as decodedPng() gives them.
+    giveImage(name, bytes, {width, height, values, rgb}) {
+      const pixels = array => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+      require(withText(name, n => withBytes(bytes, b => withBytes(pixels(values), v => rgb
+        ? withBytes(pixels(rgb), c => module._astrolith_give_image(n, b, bytes.length, width, height, v, c))
+        : module._astrolith_give_image(n, b, bytes.length, width, height, v, 0)))));
+    },
     // A body drawn from the recipe's population, with the ground of a measured one: {bytes, sha256, figures}. `library` has the
     // bytes of measured bodies' recipes by the names of their files; without it the body stays bare.
     draw(recipe, name, library) {

@@ -8,12 +8,14 @@ export class CoreClient {
     this.number = 0;
     this.waiting = new Map();
     this.onfraction = () => {};
+    this.images = [];  // {name, bytes}, given to every worker
     this.worker = this.started();
   }
 
   started() {
     const worker = new Worker(this.url);
     worker.postMessage({module: this.module});
+    this.images.forEach(({name, bytes}) => worker.postMessage({call: "giveImage", args: [bytes, name]}));
     worker.onmessage = ({data}) => {
       if (worker === this.worker) this.take(data);  // one that was ended may have sent more
     };
@@ -25,12 +27,19 @@ export class CoreClient {
 
   take(data) {
     if (data.fraction !== undefined) return this.onfraction(data.fraction);
+    if (!this.waiting.has(data.id)) return;  // images are given again without a call
     const {resolve, reject} = this.waiting.get(data.id);
     this.waiting.delete(data.id);
     if (!data.error) return resolve(data.result);
     const error = Object.assign(new Error(data.error.message), {status: data.error.status});
     reject(error);
     if (error.status === undefined) this.fail(error);  // a trap: the module is not to be used again
+  }
+
+  // Gives images to this worker, and to those that follow it.
+  async give(images) {
+    this.images = images;
+    for (const {name, bytes} of images) await this.call("giveImage", bytes, name);
   }
 
   call(call, ...args) {

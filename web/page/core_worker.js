@@ -37,6 +37,7 @@ const calls = {
     return core.writeMesh(format);
   },
   writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
+  giveImage: async (core, bytes, name) => core.giveImage(name, bytes, await decodedPng(bytes, name)),
   draw: (core, recipe, name, library) => core.draw(recipe, name, library),
   readMesh: (core, bytes, name) => readMesh(bytes, name),
   version: core => core.version(),
@@ -48,7 +49,7 @@ onmessage = async ({data}) => {
   if (data.module) return start(data.module);
   try {
     const result = await calls[data.call](await core, ...data.args);
-    postMessage({id: data.id, result}, typeof result === "object" ? buffersOf(result) : []);
+    postMessage({id: data.id, result}, result && typeof result === "object" ? buffersOf(result) : []);
   } catch (error) {
     postMessage({id: data.id, error: {message: error.message, status: error.status}});
   }

@@ -31,4 +31,5 @@ export async function copyText(text, button) {
 }
 
 // Three significant digits, with commas.
-export const shortNumber = x => Number(x.toPrecision(3)).toLocaleString("en", {maximumFractionDigits: 6});
+const numbers = new Intl.NumberFormat("en", {maximumFractionDigits: 6});
+export const shortNumber = x => numbers.format(Number(x.toPrecision(3)));

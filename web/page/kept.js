@@ -8,7 +8,8 @@ export const kept = (function () {
     // Soon, since a knob that is dragged changes the recipe many times a second.
     keep(name, text) {
       clearTimeout(waits);
-      waits = setTimeout(() => quietly(() => localStorage.setItem(KEY, JSON.stringify({name, text: text()}))), 300);
+      const now = () => quietly(() => localStorage.setItem(KEY, JSON.stringify({name, text: text()})));
+      waits = setTimeout(() => window.requestIdleCallback ? requestIdleCallback(now, {timeout: 1000}) : now(), 300);
     },
     recipe: () => quietly(() => JSON.parse(localStorage.getItem(KEY))),
     tellShown: isShown => quietly(() => isShown ? sessionStorage.setItem(SHOWN, "yes") : sessionStorage.removeItem(SHOWN)),

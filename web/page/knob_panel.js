@@ -9,6 +9,7 @@ export function knobPanel(container, knobs, editing) {
     const value = element("span", {className: "value"}), meaning = `${knob.title}: ${knob.meaning}`;
     const slider = element("input", {type: "range", min: 0, max: knob.step ? knob.high - knob.low : STEPS, step: 1, id: `knob-${knob.name}`, ariaLabel: meaning, title: knob.meaning});
     slider.oninput = () => {
+      if (!editing.document()) return;
       editing.put(knobs.turned(knob, slider.value / slider.max, editing.document(), editing.size()), `knob ${knob.name}`);
       tell(rows.find(row => row.knob === knob));
     };
@@ -38,6 +39,7 @@ export function knobPanel(container, knobs, editing) {
   // The number from which all else is drawn.
   const seed = element("input", {id: "knob-seed", inputMode: "numeric"});
   const setSeed = number => {
+    if (!editing.document()) return;
     editing.put({...editing.document(), seed: number}, undefined);
     seed.value = number;
   };

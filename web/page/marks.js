@@ -57,7 +57,7 @@ export const marks = (function () {
   }
 
   function drawThing(c, {x, y, u, ink, pixelsPerMetre, height}) {
-    const thing = thingFor(pixelsPerMetre, 0.4 * height);
+    const thing = thingFor(pixelsPerMetre, 0.2 * height);
     if (!thing) return;
     const [words, metres, shape] = thing, size = metres * pixelsPerMetre;
     c.save();

@@ -1,6 +1,6 @@
 // Meshes of files that are dropped on the page: PLY, OBJ and STL, as {positions, normals, triangles, place, figures}. Polygons
 // become fans. What else the programs read (docs/tutorial.md) is left to them.
-import {meshPlace} from "./mesh_place.js";
+import {meshPlace} from "../../estimation/page/mesh_place.js";
 
 export function readMesh(bytes, name) {
   "use strict";

@@ -47,7 +47,7 @@ async function startPage() {
   const newCore = () => new CoreClient(DATA.worker, module), cores = {main: newCore(), fine: newCore(), ahead: newCore()};
   const library = Object.fromEntries(Object.entries(DATA.library).map(([name, text]) => [`${name}.astro`, bytesOf(text)]));
   const stage = new Stage(), values = schemaValues(DATA.schema), knobs = recipeKnobs(DATA.knobs, values);
-  let recipe = null, size = 1, opened = 0, images = [], unchanged = "";
+  let recipe = null, size = 1, opened = 0, unchanged = "";
 
   // -- editing --------------------------------------------------------------------------------------------------------------
 
@@ -63,7 +63,7 @@ async function startPage() {
     isOff: path => editing.canSwitch(path) && recipe.off.has(path[1]),
     switchItem: (path, on) => recipe.switchLayer(path[1], on),
     changed: () => changed(),
-    document: () => recipe.document,
+    document: () => recipe && recipe.document,
     put(document, gesture) {
       recipe.replace(document, gesture);
       changed();
@@ -74,7 +74,7 @@ async function startPage() {
     if (name === "fields" && recipe) form.rebuild();
     if (name === "save" && recipe) tellCommand();
   });
-  at("seek").oninput = () => form.seek(at("seek").value);
+  at("seek").oninput = () => recipe && form.seek(at("seek").value);
 
   // -- meshes ---------------------------------------------------------------------------------------------------------------
 
@@ -175,7 +175,9 @@ async function startPage() {
   async function documentOf(bytes, name) {
     const json = await cores.main.lasting("writeRecipe", bytes, name, "json");
     const isCompact = bytesText(bytes.subarray(0, 3)) === "AST";
-    return recipeText.read(new TextDecoder().decode(isCompact ? json.bytes : bytes));
+    const document = recipeText.read(new TextDecoder().decode(bytes.length > 0 && !isCompact ? bytes : json.bytes));
+    const hasImages = !isCompact && (document.layers || []).some(layer => layer.type === "relief" && layer.image);
+    return hasImages ? recipeText.read(new TextDecoder().decode(json.bytes)) : document;  // the heights lie in the recipe then
   }
 
   // Shows a document; `mesh` is its coarse mesh where that was made before.
@@ -266,6 +268,11 @@ async function startPage() {
     const given = await sortedFiles(files);
     if (given.kind === "none") return tellRefusal(given.words);
     if (given.kind === "mesh") return openMesh(given);
+    try {
+      await Promise.all(Object.values(cores).map(core => core.give(given.images)));
+    } catch (error) {
+      return tellRefusal(error.message);
+    }
     await openBytes(given.bytes, given.name, {words: given.words});
   }
   at("file").onchange = () => {

@@ -1,7 +1,7 @@
 // Draws a body without WebGL: triangles with their depths into an image, in light without shadows. It has the members of BodyView.
-import {matrices, vectors} from "./matrices.js";
-import {meshPlace} from "./mesh_place.js";
-import {BodyView} from "./body_view.js";
+import {matrices, vectors} from "../../estimation/page/matrices.js";
+import {meshPlace} from "../../estimation/page/mesh_place.js";
+import {BodyView} from "../../estimation/page/body_view.js";
 
 const MOST_PIXELS = 260000;
 

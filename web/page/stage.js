@@ -1,8 +1,8 @@
 // The bodies as the page shows them: the view, what is drawn over it, and the controls of the picture.
-import {at} from "./dom.js";
-import {BodyView} from "./body_view.js";
+import {at, shortNumber} from "./dom.js";
+import {BodyView} from "../../estimation/page/body_view.js";
 import {PlainView} from "./plain_view.js";
-import {orbit} from "./orbit.js";
+import {orbit} from "../../estimation/page/orbit.js";
 import {marks} from "./marks.js";
 import {colorScale} from "./color_scale.js";
 
@@ -16,6 +16,11 @@ function newView(canvas) {
     at("figures").dataset.plain = "yes";
     return new PlainView(canvas);
   }
+}
+
+// How long the body is, where its unit is known.
+function sizeWords({figures: {extent, length_unit: unit}}) {
+  return unit ? `, ${shortNumber(Math.max(...extent))} ${unit}` : "";
 }
 
 export class Stage {
@@ -71,7 +76,7 @@ export class Stage {
       if (at("turn").getAttribute("aria-pressed") !== "true") return this.tellSun();
       this.turnBy((now - before) * 0.024);
       before = now;
-      this.view.draw();
+      this.view.request();
       requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
@@ -104,7 +109,7 @@ export class Stage {
 
   // The second body, beside the first.
   showBeside(mesh, name) {
-    this.names[1] = name;
+    this.names[1] = `${name}${sizeWords(mesh)}`;
     this.view.setBody(1, mesh);
   }
   hideBeside() {
@@ -113,10 +118,11 @@ export class Stage {
 
   look(width, height) {
     const parts = this.view.parts(width, height), [first] = parts, place = first && this.view.placeOf(first[0]);
+    const isAlone = parts.length === 1;  // each of two bodies fills its half: they have no common scale
     return {
-      pixelsPerLength: place ? this.view.pixelsPerRadius(first[1][2], first[1][3]) * place[3] : 0,
+      pixelsPerLength: isAlone && place ? this.view.pixelsPerRadius(first[1][2], first[1][3]) * place[3] : 0,
       unit: this.unit, paper: this.paper, showThing: this.thing, scale: this.scale,
-      captions: parts.length < 2 ? [] : parts.map(([body, [x, y, w, h]]) => ({x: x + w / 2, y: height - y - 0.05 * h, words: this.names[body]})),
+      captions: parts.length < 2 ? [] : parts.map(([body, [x, y, w, h]]) => ({x: x + w / 2, y: height - y - 0.05 * h, words: body === 0 && this.mesh ? `${this.names[0]}${sizeWords(this.mesh)}` : this.names[body]})),
     };
   }
   drawMarks() {

@@ -12,6 +12,7 @@ export class BodyView {
     this.background = [0.027, 0.031, 0.040];
     this.fill = 0.035;
     this.bodies = [null, null];   // what is drawn, each {mesh, buffers}
+    this.isOpen = false;          // whether surfaces show both sides
     this.overlaid = null;         // the share of the width that the first body has where both lie over each other
     this.ondraw = () => {};
     this.start();
@@ -25,8 +26,11 @@ export class BodyView {
     if (!gl) throw new Error("this browser has no WebGL 2");
     this.gl = gl;
     this.lost = false;
+    this.parallel = gl.getExtension("KHR_parallel_shader_compile");
     this.depth = this.program(bodyShaders.depthVertex, bodyShaders.depthFragment);
     this.paint = this.program(bodyShaders.vertex, bodyShaders.fragment);
+    this.ready = false;
+    this.drawn = null;
     this.maps = [this.depthMap(), null];
     this.scaleTexture = gl.createTexture();
     this.setScale(new Uint8Array(4 * 256).fill(128));
@@ -53,6 +57,22 @@ export class BodyView {
       return places.get(name);
     };
     return {program, at};
+  }
+
+  // Whether the programs are made: to ask for more before would stop the page until they are.
+  isReady() {
+    const {gl, parallel} = this;
+    const made = ({program}) => !parallel || gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR);
+    return this.ready = this.ready || made(this.depth) && made(this.paint);
+  }
+
+  // Whether the last picture is still being drawn: a queue of pictures would stop the page when it is full.
+  isBusy() {
+    const {gl, drawn} = this;
+    if (!drawn || gl.getSyncParameter(drawn, gl.SYNC_STATUS) !== gl.SIGNALED) return Boolean(drawn);
+    gl.deleteSync(drawn);
+    this.drawn = null;
+    return false;
   }
 
   // Depths as the sun sees them.
@@ -149,6 +169,7 @@ export class BodyView {
     gl.uniform1i(paint.at("painted"), buffers.painted);
     gl.uniform1i(paint.at("valued"), buffers.valued);
     gl.uniform1i(paint.at("labelled"), buffers.labelled);
+    gl.uniform1i(paint.at("plain"), buffers.plain);
     gl.bindTexture(gl.TEXTURE_2D, map.texture);
     gl.uniform1i(paint.at("depths"), 0);
     gl.uniform1i(paint.at("scale"), 1);
@@ -166,7 +187,7 @@ export class BodyView {
   drawPixels(width, height) {
     const {gl} = this;
     gl.enable(gl.DEPTH_TEST);
-    gl.enable(gl.CULL_FACE);
+    gl[this.isOpen ? "disable" : "enable"](gl.CULL_FACE);
     const sunClip = this.sunClip();
     this.shown().forEach(at => this.drawDepths(at, sunClip));
     gl.viewport(0, 0, width, height);
@@ -186,9 +207,12 @@ export class BodyView {
   draw() {
     const {clientWidth: width, clientHeight: height} = this.canvas, ratio = Math.min(window.devicePixelRatio || 1, 2);
     if (width === 0 || height === 0 || this.lost) return;
+    if (!this.isReady() || this.isBusy()) return this.request();
     const [w, h] = [width, height].map(side => Math.round(side * ratio));
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, {width: w, height: h});
     this.drawPixels(w, h);
+    this.drawn = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
     this.ondraw();
   }
 

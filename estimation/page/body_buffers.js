@@ -1,7 +1,7 @@
 import {meshPlace} from "./mesh_place.js";
 
-// A mesh on the graphics card. A mesh has positions, normals, triangles, and may have colors (sRGB bytes) and shown, a number
-// at each vertex that stands for a colour. `place` is the middle of its box and the factor that makes its radius 1.
+// A mesh on the graphics card. A mesh has positions, normals, triangles, and may have colors (sRGB bytes; with `plain`
+// they stand for values), and shown, a number at each vertex that stands for a colour. `place` is the middle of its box and the factor that makes its radius 1.
 export class BodyBuffers {
   constructor(gl, attributes, mesh, place) {
     this.gl = gl;
@@ -11,6 +11,7 @@ export class BodyBuffers {
     this.count = mesh.triangles.length;
     this.painted = Boolean(mesh.colors);
     this.valued = Boolean(mesh.shown);
+    this.plain = Boolean(mesh.plain);
     this.labelled = Boolean(mesh.labelled);
     gl.bindVertexArray(this.array);
     this.put(attributes.position, mesh.positions, 3, gl.FLOAT);

@@ -19,12 +19,12 @@ export const bodyShaders = {
     out float shown;
     void main() {
       at = (position - place.xyz) * place.w;
-      n = normal;
+      n = normal / max(length(normal), 1e-30);
       paint = color;
       shown = value;
       // Ground at a grazing sun would shadow itself; it is looked up a little above.
-      float grazing = 1.0 - clamp(dot(normal, sun), 0.0, 1.0);
-      inSun = (sunClip * vec4(at + normal * (0.003 + 0.010 * grazing), 1.0)).xyz * 0.5 + 0.5;
+      float grazing = 1.0 - clamp(dot(n, sun), 0.0, 1.0);
+      inSun = (sunClip * vec4(at + n * (0.003 + 0.010 * grazing), 1.0)).xyz * 0.5 + 0.5;
       gl_Position = clip * vec4(at, 1.0);
     }`,
 
@@ -37,7 +37,7 @@ export const bodyShaders = {
     in float shown;
     uniform vec3 sun, eye;
     uniform float fill, texel;
-    uniform bool valued, painted, labelled;
+    uniform bool valued, painted, labelled, plain;
     uniform sampler2DShadow depths;
     uniform sampler2D scale;
     out vec4 pixel;
@@ -53,10 +53,10 @@ export const bodyShaders = {
     }
 
     void main() {
-      vec3 normal = normalize(n), view = normalize(eye - at);
+      vec3 normal = normalize(gl_FrontFacing ? n : -n), view = normalize(eye - at);
       float sunward = dot(normal, sun), viewward = max(dot(normal, view), 0.02);
-      if (valued) {
-        vec3 c = texture(scale, vec2(labelled ? (shown + 0.5) / 16.0 : (0.5 + 255.0 * clamp(shown, 0.0, 1.0)) / 256.0, 0.5)).rgb;
+      if (valued || plain) {
+        vec3 c = plain ? paint : texture(scale, vec2(labelled ? (shown + 0.5) / 16.0 : (0.5 + 255.0 * clamp(shown, 0.0, 1.0)) / 256.0, 0.5)).rgb;
         pixel = vec4(c * (0.82 + 0.18 * sunward) * mix(0.6, 1.0, smoothstep(0.0, 0.25, viewward)), 1.0);
         return;
       }
