@@ -74,6 +74,8 @@ case "${1:-} ${2:-}" in
   "all ")
     quick
     for k in 1 2 3 4 5; do slice $k; done
+    check wheels scripts/wheel.sh
+    check arm64 "scripts/arm64.sh build/ci/bin/synth"
     ;;
   *) sed -n '2,5s/^# *//p' "$0" >&2; exit 2 ;;
 esac

