@@ -272,7 +272,7 @@ class Graticule {
     if (places.size() > 1) painter_.map_line(places);
   }
 
-  // Below a place; on a hemisphere over its equator, where longitudes part.
+  // Words stand below a place, or on a hemisphere above its equator, where longitudes part.
   void label(const Vec3d& direction, const std::string& words, bool above) const {
     const auto at = rays_.on_map(view_, direction);
     if (!at) return;

@@ -167,7 +167,7 @@ class Painter {
     if (!view) return {};
     const PictureRay ray = rays_.ray(*view, px, py);
     const RayHit hit = scene_.first_hit(ray.origin, ray.direction);
-    if (!hit.found) return {};
+    if (!hit.found || hit.distance >= ray.end) return {};
     const Vec3f point = ray.origin + hit.distance * ray.direction;
     const bool is_map = rays_.camera(*view).map != MapProjection::kNone;
     return {shade(-ray.direction, is_map ? map_sun(-ray.direction) : suns_[*view], point, hit, place), 1.0f};

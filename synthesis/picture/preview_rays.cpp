@@ -200,7 +200,8 @@ PictureRay PreviewRays::ray(std::size_t view, double px, double py) const {
   const ViewCamera& camera = cameras_[view];
   if (camera.map != MapProjection::kNone) {
     const Vec3d outwards = map_direction_at(view, px, py).value_or(camera.from);
-    return {to_float(origin_ + kOrthographicFar * outwards), to_float(-outwards), 0.0};
+    return {to_float(origin_ + kOrthographicFar * outwards), to_float(-outwards), 0.0,
+            static_cast<float>(kOrthographicFar)};
   }
   const Vec3d offset = camera.pixel * across(view, px, py);
   if (!camera.is_pinhole) return {to_float(camera.eye + offset), to_float(-camera.from), 0.0};

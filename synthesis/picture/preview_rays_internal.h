@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@ struct PictureRay {
   Vec3f origin, direction;  // unit direction
   // From where lengths along the ray are counted to the origin: the ray of a far camera begins near the ball.
   double before = 0.0;
+  float end = std::numeric_limits<float>::infinity();  // where the ray ends: that of a map at the origin
 };
 
 // A camera in the unit ball of a scene.

@@ -127,19 +127,23 @@ PatchSamples::Patch PatchSamples::patch_at(const ReliefPoints& points, std::uint
 PatchSamples::PatchSamples(const ReliefPoints& points, const PatchGrid& grid, std::size_t count,
                            std::uint32_t hash)
     : grid_(grid) {
-  std::vector<Patch> patches(count);
-  parallel_for(
-      0, static_cast<std::int64_t>(count),
-      [&](std::int64_t number) {
-        std::uint32_t own = hash_append(hash, static_cast<std::uint32_t>(number));
-        const std::uint32_t place = draw_place(points, own);
-        patches[static_cast<std::size_t>(number)] = patch_at(points, place, hash_append(own, 7));
-      },
-      16);
-  for (const Patch& patch : patches) {
-    for (const std::size_t end : patch.ends) first_.push_back(places_.size() + end);
-    places_.insert(places_.end(), patch.places.begin(), patch.places.end());
-    shares_.insert(shares_.end(), patch.shares.begin(), patch.shares.end());
+  constexpr std::size_t kTogether = 128, kMostShares = std::size_t{1} << 23;
+  for (std::size_t first = 0; first < count && places_.size() < kMostShares; first += kTogether) {
+    std::vector<Patch> patches(std::min(kTogether, count - first));
+    parallel_for(
+        0, static_cast<std::int64_t>(patches.size()),
+        [&](std::int64_t k) {
+          const std::size_t number = first + static_cast<std::size_t>(k);
+          std::uint32_t own = hash_append(hash, static_cast<std::uint32_t>(number));
+          const std::uint32_t place = draw_place(points, own);
+          patches[static_cast<std::size_t>(k)] = patch_at(points, place, hash_append(own, 7));
+        },
+        8);
+    for (const Patch& patch : patches) {
+      for (const std::size_t end : patch.ends) first_.push_back(places_.size() + end);
+      places_.insert(places_.end(), patch.places.begin(), patch.places.end());
+      shares_.insert(shares_.end(), patch.shares.begin(), patch.shares.end());
+    }
   }
 }
 

@@ -21,8 +21,9 @@ struct PatchGrid {
 };
 
 // Patches about places drawn by a hash, evenly over the surface, in tangent frames turned at random. A sample
-// is the mean of the values at the places within one sample of it, with the weights (1 - d^2)^3. A patch with
-// a sample that has no place is left out, so that there may be fewer than `count`.
+// is the mean of the values at the places within reach of it, with the weights (1 - d^2 / reach^2)^3. A patch
+// with a sample that has no place is left out, and so are all beyond some 2^23 shares of places (64 MB), so
+// that there may be fewer than `count`.
 class PatchSamples {
  public:
   PatchSamples(const ReliefPoints& points, const PatchGrid& grid, std::size_t count, std::uint32_t hash);

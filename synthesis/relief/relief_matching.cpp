@@ -80,7 +80,7 @@ std::vector<PatchScale> make_scales(const SurfaceValues& measured, const ReliefP
     const PatchSamples theirs(measured.points, grid, count, hash = hash_append(hash, 0));
     PatchSamples samples(points, grid, count, hash = hash_append(hash, 1));
     if (std::min(theirs.patches(), samples.patches()) < kFewestPatches) continue;
-    const PlaceMeans means(samples, points.size());
+    PlaceMeans means(samples, points.size());
     scales.push_back(
         {std::move(samples), means, {theirs.of(measured.values, 1.0 / edge), grid.samples(), kRidge}});
   }

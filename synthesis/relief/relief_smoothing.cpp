@@ -60,8 +60,8 @@ SortedPlaces sort_places(const ReliefPoints& points, std::span<const std::vector
 // middle.
 struct PooledPlaces {
   SortedPlaces pools;
-  std::vector<std::uint32_t>
-      first;  // of a cell's pools, at the place of the cell in the order, and at its end
+  // The number of a cell's first pool, at the place of the cell in the order of places, and at the end.
+  std::vector<std::uint32_t> first;
 
   PooledPlaces(const ReliefPoints& points, std::span<const std::vector<double>> values)
       : pools(0, values.size()), first(points.order().size() + 1, 0) {

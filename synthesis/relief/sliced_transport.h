@@ -13,7 +13,7 @@ namespace astrolith {
 //   y = R L^-1 (c - mean),   y'_k = the measured coordinate k with the rank that y_k has among all rows
 class SlicedTransport {
  public:
-  // (n x columns) Measured rows; Each variance grows by the share `ridge`. Rows that are all the
+  // (n x columns) Measured rows, of which each variance grows by the share `ridge`. Rows that are all the
   // same want nothing.
   SlicedTransport(std::vector<float> measured, std::size_t columns, double ridge);
 

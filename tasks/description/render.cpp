@@ -112,6 +112,8 @@ void check(const Job& job, const Arguments& a) {
       a.light_curve.empty())
     throw InputError("--normal-albedo: is of light as a number; add --radiance FILE.tif or a curve");
   a.look.check(job, true, "");
+  if (!a.color.empty() && a.radiance.empty() && a.phase_curve.empty() && a.light_curve.empty())
+    PictureOptions::refuse_light(job, "--color");
   if (a.range.empty()) return;
   if (!(a.range[0] < a.range[1]) || !std::isfinite(a.range[1] - a.range[0]))
     throw InputError("--range: the first number must be below the second; swap them");

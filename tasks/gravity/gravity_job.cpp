@@ -313,6 +313,7 @@ void check(const Job& job, const Arguments& a) {
     require_writable(a.harmonics);
   }
   a.look.check(job, !a.preview.empty(), "add --preview FILE.png");
+  PictureOptions::refuse_light(job, "gravity --preview");
   if (!a.preview.empty()) {
     a.look.check_file(a.preview);
     require_writable(a.preview);

@@ -139,6 +139,8 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
   if (!phase.empty()) made.sun = sun_at_phase(phase[0], phase[1]);
   made.views = parse_cameras(cameras);
   for (const Direction& view : views) made.views.push_back(view_from(to_vector(view)));
+  if (!map.empty() && usual_views(mesh).size() < standard_views().size())
+    throw InputError("--map: is of a whole body, and this patch faces one way; leave it out");
   if (!map.empty())
     made.views =
         map_views(map == "hemispheres" ? MapProjection::kHemisphere : MapProjection::kEquirectangular);
@@ -152,6 +154,14 @@ PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
   if (background == "black") made.background = {0, 0, 0};
   if (background == "white") made.background = {1, 1, 1};
   return made;
+}
+
+void PictureOptions::refuse_light(const Job& job, const std::string& colors) {
+  for (const char* name : {"--ambient", "--reflectance"}) {
+    if (job.options.option(name).count() > 0)
+      throw InputError(std::string(name) + ": does nothing to colours that stand for numbers (" + colors +
+                       "), which keep a faint relief; leave it out");
+  }
 }
 
 bool PictureOptions::chooses_view(const Job& job) {

@@ -36,6 +36,10 @@ struct PictureOptions {
   // without colours.
   PreviewOptions options(const Job& job, const TriangleMesh& mesh, const std::string& unit) const;
 
+  // Throws InputError where light is chosen for a picture that hardly shows any; `colors` is the option that
+  // makes its colours stand for numbers.
+  static void refuse_light(const Job& job, const std::string& colors);
+
   // Looks from one direction under one sun instead.
   void look_from(const Vec3d& direction);
   void light_from(const Vec3d& direction);

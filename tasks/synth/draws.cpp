@@ -127,12 +127,20 @@ void declare_draw_options(Job& job, DrawOptions& options) {
 Recipe with_ground(Job& job, const DrawOptions& options, const FamilyMember& member,
                    const BodyPopulation& population, const std::filesystem::path& file) {
   Recipe recipe = member.recipe;
+  if (options.details == "none" && options.like)
+    throw InputError(
+        "--like: ends the ground of a measured body, and --details none has none; leave out one of them");
   if (options.details == "none") return recipe;
   const MeasuredBody* donor = options.details == "laws" ? nullptr : ground_donor(*member.body, population);
   if (donor == nullptr && (options.details == "relief" || options.details == "all")) {
     throw InputError(file.string() +
                      ": population: has no body with a relief; fit_population takes recipes of fit_shape "
                      "with one, or leave out --details");
+  }
+  if (donor == nullptr && options.like) {
+    throw InputError(
+        "--like: ends the ground of a measured body, and this draw has none; leave it out, or take "
+        "--details relief or all of a population with reliefs");
   }
   job.summary["drawn_body"]["ground"] = donor == nullptr ? "" : donor->name;
   if (donor != nullptr) {

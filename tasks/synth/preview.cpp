@@ -238,6 +238,8 @@ void check_preview(const Job& job, const PreviewRequest& request) {
   if (has_maps && !has_picture) {
     throw InputError("--preview-maps: is about a picture; add --preview FILE.png");
   }
+  if (has_maps && !request.look.map.empty())
+    throw InputError("--preview-maps: has the cameras of views, and --map has none; leave out one of them");
   if (!request.maps_size.empty()) {
     if (!has_maps) throw InputError("--maps-size: is about maps; add --preview-maps FILE.npz");
     parse_maps_size(request.maps_size);

@@ -95,7 +95,7 @@ void declare_options(Job& job, SynthOptions& options) {
       "--like", options.draw.like,
       "another body of the kind: the measured heights of the recipe's relief are drawn for "
       "other places, patch by patch, and moved until small patches are distributed as on the "
-      "measured surface; every --seed gives another one");
+      "measured surface; every --seed gives another one. With --fill-unseen heights are not moved");
   Option laid = job.options.add_flag("--laid", options.laid,
                                      "as --like without its last step, the moves, in a third of the time");
   laid.excludes(job.options.option("--like"));
@@ -204,8 +204,8 @@ Recipe read_input(const Job& job, const SynthOptions& options) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
                          parse_base_lengths(options.base_lengths));
   }
-  // The ground of a draw does not stand in the recipe yet.
-  if ((options.draw.like && !recipe.population) || options.laid) {
+  // The ground of a draw does not stand in the recipe yet, and is laid.
+  if ((options.draw.like || options.laid) && !recipe.population) {
     const ReliefArrangement arrangement =
         options.draw.like ? ReliefArrangement::kLike : ReliefArrangement::kLaid;
     change_reliefs(recipe, options.recipe,

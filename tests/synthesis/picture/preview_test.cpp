@@ -94,6 +94,12 @@ TEST(Preview, MapsShowDirectionsFromTheOrigin) {
   for (Vec3d& p : far.vertices) p.x += 5.0;
   options.vertex_colors.clear();
   EXPECT_THROW(render_preview(far, options), InputError);
+  // An origin beside the surface, but within the ball about it, is no ground that is seen from behind.
+  TriangleMesh near = mesh;
+  for (Vec3d& p : near.vertices) p = {p.x + 0.8, 0.2 * p.y + 0.4, 0.2 * p.z};
+  options.views = map_views(MapProjection::kEquirectangular);
+  const RgbImage partly = render_preview(near, options);
+  EXPECT_LT(grey(partly, 40, 40), 20);
 }
 
 // Where colours stand for numbers, the dark side has nearly the colour of the bar.
