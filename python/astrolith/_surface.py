@@ -98,15 +98,17 @@ def describe_surface(
 
 @dataclasses.dataclass(eq=False)
 class Craters:
-    """The craters that were found on a surface, the surest first.
+    """The craters, and boulders where they were asked for, that were found on a surface, the surest first.
 
     Attributes
     ----------
     figures
-        The member ``craters`` of the summary of ``describe --craters``: counts, sizes, depth over diameter.
+        The member ``craters`` of the summary of ``describe --craters``: counts, sizes, depth over diameter; with
+        boulders their figures, too, as the member ``boulders``.
     columns
         The columns of its table, float64 (n,) each, by their names: "x", "y" and "z" of the floor, "diameter",
-        "depth", "rim_height", "freshness", "completeness", "confidence", ...
+        "depth", "rim_height", "freshness", "completeness", "confidence", ...; "boulder" is 1 of boulders, whose depth is
+        their height, and 0 of craters.
     """
 
     figures: Record
@@ -117,7 +119,7 @@ class Craters:
 
 
 def find_craters(
-    mesh: MeshLike, *, points: int = 0, seed: int = 1, threads: int = 0, progress: Progress = None
+    mesh: MeshLike, *, boulders: bool = False, points: int = 0, seed: int = 1, threads: int = 0, progress: Progress = None
 ) -> Craters:
     """Find the craters of a surface.
 
@@ -125,6 +127,8 @@ def find_craters(
     ----------
     mesh
         A mesh of at least 1,000 triangles.
+    boulders
+        Whether large boulders are found, too.
     points
         Evenly spread points that stand for the surface: craters of 6 of their mean edges and more are found. 0: as
         many as the mesh has vertices, up to 60,000; else 500 to 1,000,000.
@@ -139,6 +143,7 @@ def find_craters(
         arrays.name,
         arrays.vertices,
         arrays.faces,
+        _arrays.flag(boulders, "boulders"),
         _arrays.integer(points, "points", 0, 1000000),
         _options.seed(seed),
         _options.threads(threads),

@@ -150,9 +150,11 @@ nb::typed<nb::dict, nb::str, nb::any> surface(const fs::path& name, const Rows<d
 }
 
 nb::typed<nb::dict, nb::str, nb::any> craters(const fs::path& name, const Rows<double>& vertices,
-                                              const Rows<std::uint32_t>& faces, std::int64_t points,
-                                              std::uint64_t seed, int threads, nb::object progress) {
+                                              const Rows<std::uint32_t>& faces, bool boulders,
+                                              std::int64_t points, std::uint64_t seed, int threads,
+                                              nb::object progress) {
   FeatureOptions options;
+  options.boulders = boulders;
   options.points = points;
   options.seed = seed;
   const FoundFeatures found = run_job(
@@ -166,8 +168,13 @@ nb::typed<nb::dict, nb::str, nb::any> craters(const fs::path& name, const Rows<d
     for (const FoundFeature& f : found.features) values.push_back(feature_columns(f)[k].second);
     columns[nb::str(feature_columns({})[k].first)] = array_of<double>(std::move(values), {count});
   }
+  std::vector<double> is_boulder;
+  for (const FoundFeature& f : found.features) is_boulder.push_back(f.sign == BlobSign::bump ? 1.0 : 0.0);
+  columns["boulder"] = array_of<double>(std::move(is_boulder), {count});
+  nlohmann::ordered_json figures = found_json(found);
+  if (boulders) figures["boulders"] = found_json(found, BlobSign::bump);
   nb::typed<nb::dict, nb::str, nb::any> result;
-  result["figures"] = found_json(found).dump();
+  result["figures"] = figures.dump();
   result["columns"] = columns;
   return result;
 }
@@ -285,8 +292,8 @@ void bind_shapes(nb::module_& module) {
              nb::arg("faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),
              nb::arg("density"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
   module.def("craters", &craters, nb::arg("name"), nb::arg("vertices").noconvert(),
-             nb::arg("faces").noconvert(), nb::arg("points"), nb::arg("seed"), nb::arg("threads"),
-             nb::arg("progress").none());
+             nb::arg("faces").noconvert(), nb::arg("boulders"), nb::arg("points"), nb::arg("seed"),
+             nb::arg("threads"), nb::arg("progress").none());
   module.def("realism", &realism, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
              nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),
              nb::arg("b_faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),

@@ -103,3 +103,8 @@ def test_a_crater_is_found():
     assert found.columns["x"][0] == pytest.approx(0.94, abs=0.02)
     with pytest.raises(ValueError, match="1000 triangles"):
         astrolith.find_craters(sphere(8))
+    # The same turned outwards, and narrower, is a boulder.
+    t = np.linalg.norm(points - [-1, 0, 0], axis=1) / 0.2
+    both = astrolith.find_craters((points * (1 + 0.08 * np.clip(1 - t**2, 0, None))[:, None], faces), boulders=True)
+    assert not found.columns["boulder"].any() and both.columns["boulder"].sum() == both.figures.boulders.listed >= 1
+    assert both.columns["x"][both.columns["boulder"] > 0][0] == pytest.approx(-1.08, abs=0.05)
