@@ -25,7 +25,8 @@ namespace {
 
 constexpr int kPlaces = 4096;
 constexpr double kLeast = 1e-4;  // of the distance: below is what rounding makes of flat ground
-constexpr double kSmooth = 0.25, kSmoothest = 0.1;  // of the median roughness, of the ground
+// Shares: kSmooth of the median roughness, the others of the ground. Boulders lie in patches of rough ground.
+constexpr double kSmooth = 0.25, kSmoothest = 0.1, kRough = 0.9;
 
 // The number of the last relief; -1 where there is none.
 int last_relief(const Recipe& recipe) {
@@ -286,8 +287,8 @@ std::optional<RoughGround> rough_ground(Recipe& recipe) {
   const auto quantile = [&](double share) {
     return roughness[static_cast<std::size_t>(share * static_cast<double>(roughness.size()))];
   };
-  const double to = round_to_seven_digits(quantile(0.5)),
-               from = round_to_seven_digits(std::max(kSmooth * to, quantile(kSmoothest)));
+  const double to = round_to_seven_digits(quantile(kRough)),
+               from = round_to_seven_digits(std::max(kSmooth * quantile(0.5), quantile(kSmoothest)));
   if (!(to - from > kLeast * distance)) return {};
   if (relief.name.empty()) relief.name = free_name(recipe);
   double sum = 0.0;

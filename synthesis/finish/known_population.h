@@ -86,9 +86,9 @@ struct Finish {
 double finest_size(const Recipe& recipe);
 
 // The recipe with the landforms of a known body after its layers, craters first. Where the recipe has a
-// relief, boulders spare the ground that it shows smooth: rough_ground(). Throws InputError, naming
-// `name`, for a body that is not known, a recipe without a body, a unit other than m and km, and for sizes
-// that leave nothing to draw.
+// relief, boulders lie the denser the rougher the ground is, and spare what it shows smooth: rough_ground().
+// Throws InputError, naming `name`, for a body that is not known, a recipe without a body, a unit other than
+// m and km, and for sizes that leave nothing to draw.
 Finish finish_recipe(const Recipe& recipe, const std::string& name, const FinishRequest& request);
 
 }  // namespace astrolith

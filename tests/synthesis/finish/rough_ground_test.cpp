@@ -36,8 +36,9 @@ TEST(RoughGround, HasTheDistanceOfTheHeights) {
   ASSERT_TRUE(rough.has_value());
   EXPECT_EQ(std::get<ReliefLayer>(recipe.layers[0]).name, rough->mask.layer);
   EXPECT_EQ(rough->mask.over, 8.0);
-  EXPECT_GT(rough->mean_weight, 0.5);
-  EXPECT_LT(rough->mean_weight, 1.0);
+  // A weight that is 1 on the roughest tenth alone and falls to 0 below a quarter of the median.
+  EXPECT_GT(rough->mean_weight, 0.3);
+  EXPECT_LT(rough->mean_weight, 0.7);
 }
 
 // Boulders of a finish lie on rough ground, as many on the body as the counts say.
