@@ -3,6 +3,7 @@
 # of this machine: arm64.sh SYNTH [CELLS]. The libraries of an arm64 system are unpacked into build/arm64/root.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+export LC_ALL=C
 
 native=$(realpath "${1:?arm64.sh: name the program synth of this machine}")
 cells=${2:-48}
@@ -10,9 +11,10 @@ scripts/setup.sh --synth --arm64
 root=$PWD/build/arm64/root
 if [[ ! -e $root/usr/include/zip.h ]]; then
   mkdir -p build/arm64
-  rm -rf "$root"
+  rm -rf "$root" "$root.new"
   packages=$(sed -n '/^packages=(/,/^)/p' scripts/setup.sh | grep -o 'lib[^ ]*-dev\|nlohmann[^ ]*\|zlib1g-dev' | paste -sd,)
-  mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$packages,libstdc++-12-dev" bookworm "$root" 2>/dev/null
+  mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$packages,libstdc++-12-dev" bookworm "$root.new"
+  mv "$root.new" "$root"
 fi
 command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --preset synth-only -B build/arm64/build -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/arm64.cmake" \
@@ -35,7 +37,7 @@ echo "the headers compile for arm64 and, where they branch, for a system that is
 # mesh NAME COMMAND ...: the SHA-256 of the mesh of an example, without the line that names the program.
 mesh() {
   "${@:2}" "$recipe" -o "$work/$1.ply" --resolution "$cells" --device cpu --quiet
-  LC_ALL=C sed '/^comment made by /d' "$work/$1.ply" | sha256sum | cut -c 1-64
+  sed '/^comment made by /d' "$work/$1.ply" | sha256sum | cut -c 1-64
 }
 count=0 unlike=0
 for recipe in synthesis/examples/*.json; do

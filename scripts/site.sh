@@ -3,7 +3,7 @@
 #   site.sh          builds build/site/html, which needs no network, and checks it: dead links, long pages, docstrings
 #   site.sh serve    also serves it at http://127.0.0.1:8056 until Ctrl-C
 # Takes the Python package of ASTROLITH_BUILD (default build/release), which it builds where it is not there, and the page of
-# build/web where scripts/web.sh build has made it.
+# build/web where scripts/web.sh build has made it. Exit status 3 and a word where the Python package index is not reached.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case "${1:-}" in "" | serve) ;; *) sed -n '2,6s/^# *//p' "$0" >&2; exit 2 ;; esac
@@ -13,8 +13,12 @@ venv=build/site-venv
 if ! cmp -s docs/site/requirements.txt "$venv/requirements.txt"; then
   rm -rf "$venv"
   /usr/bin/python3 -m venv "$venv"
-  "$venv/bin/pip" install -q --disable-pip-version-check -r docs/site/requirements.txt ||
-    { echo "site.sh: the Python package index cannot be reached, which has MkDocs and its theme" >&2; exit 3; }
+  if ! "$venv/bin/pip" install -q --disable-pip-version-check -r docs/site/requirements.txt 2>"$venv/pip.log"; then
+    cat "$venv/pip.log" >&2
+    grep -qE 'connection broken by|NewConnectionError|ConnectTimeout|NameResolutionError|ProxyError' "$venv/pip.log" || exit 1
+    echo "site.sh: the Python package index cannot be reached, which has MkDocs and its theme" >&2
+    exit 3
+  fi
   cp docs/site/requirements.txt "$venv/"
 fi
 build=${ASTROLITH_BUILD:-build/release}
