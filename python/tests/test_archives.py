@@ -56,6 +56,64 @@ def test_what_has_no_label_is_refused(tmp_path):
         bridges.write_pds4_label(tmp_path / "body.obj", **{**NAMES, "identifier": "Itokawa"})
 
 
+def binary_ply(properties, faces, corners=3):
+    """A PLY of one vertex and one facet, of the types that other programs name."""
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex 1\n{properties}element face 1\n{faces}end_header\n"
+    return header.encode() + bytes(12) + bytes([corners]) + bytes(4 * corners)
+
+
+FLOATS = "property float32 x\nproperty float32 y\nproperty float32 z\n"
+FACES = "property list uint8 int32 vertex_indices\n"
+
+
+def test_the_other_names_of_types_are_taken_and_unknown_ones_are_not(tmp_path):
+    mesh = tmp_path / "other.ply"
+    mesh.write_bytes(binary_ply(FLOATS, FACES))
+    bridges.write_pds4_label(mesh, **NAMES)
+    space = "{http://pds.nasa.gov/pds4/pds/v1}"
+    types = [each.text for each in xml.parse(f"{mesh}.xml").getroot().iter(f"{space}data_type")]
+    assert types == ["IEEE754LSBSingle"] * 3 + ["UnsignedByte"] + ["SignedLSB4"] * 3
+    mesh.write_bytes(binary_ply(FLOATS.replace("float32 z", "half z"), FACES))
+    with pytest.raises(ValueError, match="property z: is of type 'half'"):
+        bridges.write_pds4_label(mesh, **NAMES)
+
+
+def test_facets_of_other_numbers_of_corners_and_uneven_rows_are_refused(tmp_path):
+    mesh, table = tmp_path / "mesh.ply", tmp_path / "table.csv"
+    # Of the second the size is that of a triangle.
+    for content in (binary_ply(FLOATS, FACES, corners=4), binary_ply(FLOATS, FACES).replace(b"\3", b"\2"), binary_ply(FLOATS, FACES)[:-1]):
+        mesh.write_bytes(content)
+        with pytest.raises(ValueError, match="other facets than triangles"):
+            bridges.write_pds4_label(mesh, **NAMES)
+    mesh.write_bytes(binary_ply(FLOATS, FACES) + b"\0")
+    with pytest.raises(ValueError, match="where its elements take"):
+        bridges.write_pds4_label(mesh, **NAMES)
+    for text in ("x,y\n1,2\n3\n", "x,y\n1,2\n3,4,5\n", "x,y\n1,2\n\n3,4\n"):
+        table.write_text(text)
+        with pytest.raises(ValueError, match="line 3: has [123] fields where the first line names 2"):
+            bridges.write_pds4_label(table, **NAMES)
+    table.write_text("x,y\n")
+    with pytest.raises(ValueError, match="no rows follow"):
+        bridges.write_pds4_label(table, **NAMES)
+    table.write_bytes(b"x,y\r\n1,2\r\n3,4")
+    bridges.write_pds4_label(table, **NAMES)
+    assert "<records>2</records>" in (tmp_path / "table.csv.xml").read_text()
+
+
+def test_the_card_of_draws_has_the_body_drawn_and_the_numbers_of_all_members(tmp_path):
+    line = {"seed": 1, "files": [{"name": "a.ply", "sha256": "0"}]}
+    members = [{**line, "member": 0, "drawn": {"a": 1.5}}, {**line, "member": 1, "drawn": {"b": 2.5}}]
+    for member, diameter, kind in zip(members, (300.0, 400.0), ("top", "rounded")):
+        member["drawn_body"] = {"diameter": diameter, "class": kind, "donors": [], "attempts": 1}
+    (tmp_path / "set.jsonl").write_text("".join(json.dumps(member) + "\n" for member in members))
+    bridges.write_data_card(tmp_path / "set.jsonl", tmp_path / "card.json", name="a", description="b", license="CC0-1.0", creator="c", date="2026-11-29")
+    fields = json.loads((tmp_path / "card.json").read_text())["recordSet"][0]["field"]
+    assert [each["name"] for each in fields] == ["member", "seed", "drawn_a", "drawn_b", "diameter", "class"]
+    mlcroissant = pytest.importorskip("mlcroissant")
+    records = list(mlcroissant.Dataset(jsonld=str(tmp_path / "card.json")).records("members"))
+    assert [(each["members/diameter"], each["members/class"]) for each in records] == [(300.0, b"top"), (400.0, b"rounded")]
+
+
 def test_mlcroissant_reads_the_card_of_a_set(tmp_path, example):
     mlcroissant = pytest.importorskip("mlcroissant")
     made = astrolith.mesh(example("family_of_rubble"), resolution=16, members="0:3", output=tmp_path / "{member}.ply", manifest=tmp_path / "manifest.jsonl")

@@ -23,7 +23,7 @@ _KINDS = {
     ".json": ("the recipe of each member", "application/json"),
     ".astro": ("the compact recipe of each member", "application/octet-stream"),
 }
-_TYPES = {int: "sc:Integer", float: "sc:Float"}
+_TYPES = {int: "sc:Integer", float: "sc:Float", str: "sc:Text"}
 _CONTEXT = {
     "@language": "en", "@vocab": "https://schema.org/", "sc": "https://schema.org/", "cr": "http://mlcommons.org/croissant/",
     "dct": "http://purl.org/dc/terms/", "conformsTo": "dct:conformsTo", "citeAs": "cr:citeAs", "column": "cr:column", "recordSet": "cr:recordSet",
@@ -60,7 +60,6 @@ def write_data_card(manifest: PathLike, file: PathLike, *, name: str, descriptio
         raise ValueError(f"{name_of_card}: is not in the folder of the manifest, to which the names of files are relative; write it to {place.parent}")
     if not len(made):
         raise ValueError(f"{place}: holds no member; make one with synth --members")
-    first = made._members[0]
     names = [entry["name"] for member in made._members for entry in member["files"]]
     folders = sorted({str(Path(each).parent) for each in names})
     objects: list[dict[str, Any]] = [
@@ -80,7 +79,11 @@ def write_data_card(manifest: PathLike, file: PathLike, *, name: str, descriptio
         return {"@type": "cr:Field", "@id": f"members/{identifier}", "name": identifier, "description": words, "dataType": _TYPES[type(value)], "source": source}
 
     fields = [field("member", 0, "member", "the number of the body"), field("seed", 0, "seed", "its seed")]
-    fields += [field(f"drawn {key}", float(value), f"drawn.{key}", f"what was drawn for {key} of the recipe") for key, value in first["drawn"].items()]
+    for key in dict.fromkeys(key for member in made._members for key in member["drawn"]):
+        fields.append(field(f"drawn {key}", 0.0, f"drawn.{key}", f"what was drawn for {key} of the recipe"))
+    if any("drawn_body" in member for member in made._members):
+        fields.append(field("diameter", 0.0, "drawn_body.diameter", "the diameter that was drawn from the population, in the unit of its recipes"))
+        fields.append(field("class", "", "drawn_body.class", "the class of the body that was drawn, such as rounded"))
     card = {
         "@context": _CONTEXT, "@type": "sc:Dataset", "conformsTo": "http://mlcommons.org/croissant/1.1", "name": name, "description": description,
         "license": license, "creator": {"@type": "sc:Organization", "name": creator}, "datePublished": date, "version": "1.0.0",

@@ -101,8 +101,7 @@ def _member(line: str) -> Optional[dict[str, Any]]:
         stated = json.loads(line)
         member = {key: stated[key] for key in ("seed", "drawn", "files")}
         member["member"] = int(stated["member"])
-        if "variation" in stated:
-            member["variation"] = stated["variation"]
+        member.update({key: stated[key] for key in ("variation", "drawn_body") if key in stated})
         for entry in member["files"]:
             if not all(isinstance(entry[key], str) for key in ("name", "sha256")):
                 return None

@@ -9,6 +9,8 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 from typing import Optional
 
+import numpy as np
+
 from astrolith import _arrays
 from astrolith._arrays import PathLike
 from astrolith.bridges._whole_file import write_bytes
@@ -19,6 +21,10 @@ _SPACE = "http://pds.nasa.gov/pds4/pds/v1"
 _BINARY = {
     "char": ("SignedByte", 1), "uchar": ("UnsignedByte", 1), "short": ("SignedLSB2", 2), "ushort": ("UnsignedLSB2", 2),
     "int": ("SignedLSB4", 4), "uint": ("UnsignedLSB4", 4), "float": ("IEEE754LSBSingle", 4), "double": ("IEEE754LSBDouble", 8),
+}  # fmt: skip
+_ALIASES = {
+    "int8": "char", "uint8": "uchar", "int16": "short", "uint16": "ushort",
+    "int32": "int", "uint32": "uint", "float32": "float", "float64": "double",
 }  # fmt: skip
 # The ends of names of columns, and PDS4's units.
 _UNITS = {"_m_s2": "m/s**2", "_J_kg": "J/kg", "_deg": "deg", "_kg": "kg", "_km": "km", "_m": "m"}
@@ -67,6 +73,26 @@ def _header(area: xml.Element, size: int, standard: str) -> None:
     _add(header, parsing_standard_id=standard)
 
 
+def _columns(element: str, name: str) -> list[tuple[str, str]]:
+    """The columns of an element of a PLY file, where a list is one of three corners: their names and PLY's types."""
+    columns: list[tuple[str, str]] = []
+    for counted, of, column in re.findall(r"^property (?:list (\w+) )?(\w+) (\w+)$", element, re.M):
+        columns += [("corners", counted), *((f"{column}_{k}", of) for k in (1, 2, 3))] if counted else [(column, of)]
+    columns = [(column, _ALIASES.get(of, of)) for column, of in columns]
+    for column, of in columns:
+        if of not in _BINARY:
+            raise ValueError(f"{name}: property {column}: is of type {of!r}, which PLY has not; write it with synth or write_mesh")
+    return columns
+
+
+def _has_triangles(records: bytes, number: int, columns: list[tuple[str, str]]) -> bool:
+    """Whether each record states three corners, where it states their number."""
+    sizes = [_BINARY[of][1] for _, of in columns]
+    table = np.frombuffer(records, np.uint8).reshape(number, sum(sizes))
+    stated = [table[:, sum(sizes[:k]) : sum(sizes[: k + 1])] for k, (column, _) in enumerate(columns) if column == "corners"]
+    return all((corners[:, 0] == 3).all() and not corners[:, 1:].any() for corners in stated)
+
+
 def _ply(area: xml.Element, content: bytes, name: str) -> None:
     """The tables of vertices and facets of a binary PLY file of triangles."""
     start = content.find(b"end_header\n") + len(b"end_header\n")
@@ -78,29 +104,31 @@ def _ply(area: xml.Element, content: bytes, name: str) -> None:
     end = start
     for element in re.split(r"^element ", header, flags=re.M)[1:]:
         kind, number = element.split()[:2]
-        columns = [(column, of) for of, column in re.findall(r"^property (\w+) (\w+)$", element, re.M)]
-        lists = re.findall(r"^property list (\w+) (\w+) (\w+)$", element, re.M)
-        if lists:
-            counted, of, column = lists[0]
-            columns = [("corners", counted), *((f"{column}_{k}", of) for k in (1, 2, 3)), *columns]
-        end = _binary_table(area, kind, end, int(number), columns, said[1] if said else None)
+        columns = _columns(element, name)
+        begin, end = end, _binary_table(area, kind, end, int(number), columns, said[1] if said else None)
+        if end > len(content) or not _has_triangles(content[begin:end], int(number), columns):
+            raise ValueError(f"{name}: ends within its {kind}, or has other facets than triangles, for which PDS4 has no table")
     if end != len(content):
-        raise ValueError(f"{name}: has {len(content)} bytes where triangles take {end}; PDS4 has no facets of other numbers of corners")
+        raise ValueError(f"{name}: has {len(content)} bytes where its elements take {end}; write it anew with synth or write_mesh")
 
 
 def _csv(area: xml.Element, content: bytes, name: str, unit: Optional[str]) -> None:
     """The table of a CSV file, of which the first line names the columns."""
     lines = content.split(b"\n")
     columns = lines[0].decode("utf-8").strip().split(",")
-    if len(lines) < 3 or not all(re.fullmatch(r"[A-Za-z_][\w .]*", column) for column in columns):
+    rows = lines[1:] if lines[-1] else lines[1:-1]
+    if not rows or not all(re.fullmatch(r"[A-Za-z_][\w .]*", column) for column in columns):
         raise ValueError(f"{name}: its first line names no columns, or no rows follow; write one with gravity -o FILE.csv")
+    for number, row in enumerate(rows, 2):
+        if not row.strip() or row.count(b",") + 1 != len(columns):
+            raise ValueError(f"{name}: line {number}: has {row.count(b',') + 1} fields where the first line names {len(columns)}; write as many, none of them with a comma")
     _header(area, len(lines[0]) + 1, "PDS DSV 1")
     table = _add(area, "Table_Delimited", name="table")
     xml.SubElement(table, "offset", unit="byte").text = str(len(lines[0]) + 1)
     delimiter = "Carriage-Return Line-Feed" if lines[0].endswith(b"\r") else "Line-Feed"
-    _add(table, parsing_standard_id="PDS DSV 1", records=sum(bool(line) for line in lines[1:]), record_delimiter=delimiter, field_delimiter="Comma")
+    _add(table, parsing_standard_id="PDS DSV 1", records=len(rows), record_delimiter=delimiter, field_delimiter="Comma")
     record = _add(table, "Record_Delimited", fields=len(columns), groups=0)
-    first = lines[1].decode("utf-8").strip().split(",")
+    first = rows[0].decode("utf-8").strip().split(",")
     for number, (column, value) in enumerate(zip(columns, first), 1):
         number_like = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", value)
         _add(record, "Field_Delimited", name=column, field_number=number, data_type="ASCII_Real" if number_like else "ASCII_String", unit=_unit_of(column, unit))
