@@ -1,7 +1,8 @@
 import {meshPlace} from "./mesh_place.js";
 
 // A mesh on the graphics card. A mesh has positions, normals, triangles, and may have colors (sRGB bytes; with `plain`
-// they stand for values), and shown, a number at each vertex that stands for a colour. `place` is the middle of its box and the factor that makes its radius 1.
+// they stand for values), and shown, a number at each vertex that stands for a colour. `place` is the middle of its box
+// and the factor that makes its radius 1.
 export class BodyBuffers {
   constructor(gl, attributes, mesh, place) {
     this.gl = gl;

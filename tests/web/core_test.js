@@ -6,6 +6,7 @@ const crypto = require("crypto");
 const fs = require("fs");
 const os = require("os");
 const path = require("path");
+const zlib = require("zlib");
 const {hostileRecipes} = require("./hostile_recipes.js");
 const {loadCore} = require("./node_core.js");
 
@@ -121,6 +122,36 @@ function testDraws(core) {
   console.log(`draws: ${drawn} bodies with the bytes of synth, ${draws.length - 3} refused in its words`);
 }
 
+// A PNG file of 16 x 16 pixels of 8 bits.
+function pngOf(kind, rows, ...chunks) {
+  const chunk = (type, data) => {
+    const length = Buffer.alloc(4);
+    length.writeUInt32BE(data.length);
+    return Buffer.concat([length, Buffer.from(type), data, Buffer.alloc(4)]);  // sums are not looked at
+  };
+  const signature = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), head = Buffer.from([0, 0, 0, 16, 0, 0, 0, 16, 8, kind, 0, 0, 0]);
+  return Buffer.concat([signature, chunk("IHDR", head), ...chunks.map(data => chunk("PLTE", data)), chunk("IDAT", zlib.deflateSync(rows))]);
+}
+
+// The palette counts where the pixels are its numbers, and the stream ends where the pixels do.
+async function testPngs() {
+  const {decodedPng} = await import("../../web/page/png_reading.js");
+  const palette = Buffer.from([9, 8, 7, 6, 5, 4]), colors = Buffer.alloc(16 * 49, 1), numbers = Buffer.alloc(16 * 17, 1);
+  for (let y = 0; y < 16; ++y) colors[49 * y] = numbers[17 * y] = 0;
+  const decoded = (...png) => decodedPng(pngOf(...png), "a.png").then(({rgb}) => String(rgb.slice(0, 3).map(x => x / 257)), error => error.message);
+  const cases = [
+    ["1,1,1", 2, colors, palette],
+    ["6,5,4", 3, numbers, palette],
+    ["a.png: lacks its palette; save it again", 3, numbers],
+    ["a.png: holds more bytes than its pixels have; save it again", 2, Buffer.alloc(1e7), palette],
+    ["a.png: ends too early; save it again", 2, numbers],
+  ];
+  for (const [right, ...png] of cases) {
+    const got = await decoded(...png);
+    check(got === right, `a PNG: ${got} instead of ${right}`);
+  }
+}
+
 // A host that says no stops the work, and the core goes on to the next call.
 async function testStop() {
   let calls = 0, stops = true;
@@ -137,6 +168,7 @@ async function main() {
   testExamples(core);
   testHostileRecipes(core);
   testDraws(core);
+  await testPngs();
   await testStop();
   fs.rmSync(folder, {recursive: true});
   process.exit(failures > 0 ? 1 : 0);

@@ -229,9 +229,18 @@ def check_images(page, synth):
         page.driver.find_element(By.ID, "file").send_keys(f"{recipe}\n{image}")
         page.wait(lambda: page.text("refusal") == "" and '"heights"' in page.script("return window.astrolith.recipeText()"))
         page.set_cells(CELLS)
+        page_mesh = page.mesh_hash()
+        other = pathlib.Path(folder) / "other.png"
+        other.write_bytes(b"no PNG")
+        page.driver.find_element(By.ID, "file").send_keys(str(recipe))
+        page.wait(lambda: "is a file beside the recipe" in page.text("refusal"))
+        page.driver.find_element(By.ID, "file").send_keys(f"{recipe}\n{image}\n{other}")
+        page.wait(lambda: page.text("refusal") == "" and '"heights"' in page.script("return window.astrolith.recipeText()"))
+        page.settled()
         mesh = pathlib.Path(folder) / "mesh.ply"
         subprocess.run([synth.program, recipe, "-o", mesh, "--resolution", str(CELLS), "--quiet"], check=True)
-        check(page.mesh_hash() == hashlib.sha256(mesh.read_bytes()).hexdigest(), "a recipe with its image makes another mesh")
+        digits = hashlib.sha256(mesh.read_bytes()).hexdigest()
+        check(page_mesh == digits == page.mesh_hash(), "a recipe with its image makes another mesh")
 
 
 def check_draw(page, synth):
@@ -266,6 +275,8 @@ def check_draw(page, synth):
     button.click()
     page.wait(lambda: "asteroids: population.draw.axes: have a ratio of 10;" in page.text("refusal"), 120)
     check(page.recipe() == before, "a draw that is refused replaces the recipe")
+    seed = page.script("return document.getElementById('draw-seed').value")
+    check(seed == "8", f"of two refusals, one by the core, the seed became {seed}")
     page.open(example("fractal_hills.json"), "fractal_hills.json")
     check(page.text("drawn") == "", "the words about a drawn body stay with another")
     page.set_value("draw-b", "")

@@ -82,6 +82,10 @@ Recipe body_recipe_in(std::string_view bytes, const std::string& name) {
   return recipe;
 }
 
+bool same_heights(const ExemplarImage& a, const ExemplarImage& b) {
+  return a.width == b.width && a.height == b.height && a.values == b.values;
+}
+
 // The pixels of a recipe's reliefs, and as text all else that decides the work which ImplicitField takes from
 // a field that is `like` it.
 struct FieldWork {
@@ -104,7 +108,7 @@ struct FieldWork {
   bool operator==(const FieldWork& other) const {
     return text == other.text && std::equal(pixels.begin(), pixels.end(), other.pixels.begin(),
                                             other.pixels.end(), [](const auto& a, const auto& b) {
-                                              return a == b || (a && b && a->values == b->values);
+                                              return a == b || (a && b && same_heights(*a, *b));
                                             });
   }
 
@@ -271,6 +275,11 @@ void give_image(const std::string& name, std::string_view bytes, int width, int 
   given_images()[name] = {sha256(bytes), image};
 }
 
+void forget_images() {
+  given_images().clear();
+  state().body.reset();
+}
+
 void draw(std::string_view text, const std::string& name) {
   PageState& to = state();
   const Recipe recipe = recipe_in(text, name);
@@ -322,6 +331,7 @@ int astrolith_write_mesh(const char* format) {
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format) {
   return astrolith::run_guarded([&] { astrolith::write_recipe_anew({recipe, bytes}, name, format); });
 }
+void astrolith_forget_images() { astrolith::forget_images(); }
 int astrolith_give_image(const char* name, const char* bytes, std::size_t count, int width, int height,
                          const std::uint16_t* values, const std::uint16_t* rgb) {
   return astrolith::run_guarded([&] {

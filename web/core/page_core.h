@@ -42,6 +42,8 @@ int astrolith_write_mesh(const char* format);
 // The recipe written anew: "json" with every field, or "astro". Returns a status, as astrolith_make() does.
 int astrolith_write_recipe(const char* recipe, std::size_t bytes, const char* name, const char* format);
 
+// Forgets the images that were given, and the body that was made of them.
+void astrolith_forget_images(void);
 // Gives an image that recipes name, from now on: the name and the bytes of its file, and its grey values or
 // the luma of its colours (height x width, full scale is 65535), with its colours (#pixels x 3) or null.
 // Returns a status, as astrolith_make() does. The heights of a relief whose image was given are written into

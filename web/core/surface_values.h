@@ -18,8 +18,7 @@ struct SurfaceValues {
 
 // `what` is
 //   "slope"   against the local vertical of a body of even density, in degrees. The body turns as the
-//   recipe's
-//             erosion or boulders say, and is else at rest.
+//             recipe's erosion or boulders say, and is else at rest.
 //   "height"  the elevation over the mean geopotential, in metres
 //   "albedo"  the normal albedo, the mean of red, green and blue
 //   "label"   the layer that changed the surface most

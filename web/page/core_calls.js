@@ -77,6 +77,7 @@ export function coreCalls(module) {
         f => module._astrolith_write_recipe(r, recipe.length, n, f)))));
       return written();
     },
+    forgetImages: () => module._astrolith_forget_images(),
     // An image that recipes name: the bytes of its file, and its pixels as decodedPng() gives them.
     giveImage(name, bytes, {width, height, values, rgb}) {
       const pixels = array => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);

@@ -8,14 +8,14 @@ export class CoreClient {
     this.number = 0;
     this.waiting = new Map();
     this.onfraction = () => {};
-    this.images = [];  // {name, bytes}, given to every worker
+    this.images = [];  // {name, bytes}, given to every worker before its calls
     this.worker = this.started();
   }
 
   started() {
     const worker = new Worker(this.url);
     worker.postMessage({module: this.module});
-    this.images.forEach(({name, bytes}) => worker.postMessage({call: "giveImage", args: [bytes, name]}));
+    if (this.images.length > 0) worker.postMessage({call: "giveImages", args: [this.images]});
     worker.onmessage = ({data}) => {
       if (worker === this.worker) this.take(data);  // one that was ended may have sent more
     };
@@ -36,10 +36,11 @@ export class CoreClient {
     if (error.status === undefined) this.fail(error);  // a trap: the module is not to be used again
   }
 
-  // Gives images to this worker, and to those that follow it.
+  // Gives images to this worker, and to those that follow it, in the place of those that were given before.
   async give(images) {
+    if (images.length + this.images.length === 0) return;
     this.images = images;
-    for (const {name, bytes} of images) await this.call("giveImage", bytes, name);
+    await this.lasting("giveImages", images);
   }
 
   call(call, ...args) {

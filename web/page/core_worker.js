@@ -37,7 +37,13 @@ const calls = {
     return core.writeMesh(format);
   },
   writeRecipe: (core, recipe, name, format) => core.writeRecipe(recipe, name, format),
-  giveImage: async (core, bytes, name) => core.giveImage(name, bytes, await decodedPng(bytes, name)),
+  // The images in the place of all that were given before; one that cannot be read leaves those.
+  async giveImages(core, images) {
+    const decoded = [];
+    for (const {name, bytes} of images) decoded.push([name, bytes, await decodedPng(bytes, name)]);
+    core.forgetImages();
+    decoded.forEach(image => core.giveImage(...image));
+  },
   draw: (core, recipe, name, library) => core.draw(recipe, name, library),
   readMesh: (core, bytes, name) => readMesh(bytes, name),
   version: core => core.version(),
@@ -45,12 +51,18 @@ const calls = {
 
 const buffersOf = result => Object.values(result).filter(ArrayBuffer.isView).map(array => array.buffer);
 
-onmessage = async ({data}) => {
-  if (data.module) return start(data.module);
+async function answer(data) {
   try {
     const result = await calls[data.call](await core, ...data.args);
     postMessage({id: data.id, result}, result && typeof result === "object" ? buffersOf(result) : []);
   } catch (error) {
     postMessage({id: data.id, error: {message: error.message, status: error.status}});
   }
+}
+
+// Each call waits for the one before it: images take a while to be read.
+let before = Promise.resolve();
+onmessage = ({data}) => {
+  if (data.module) return start(data.module);
+  before = before.then(() => answer(data));
 };

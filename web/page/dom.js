@@ -30,6 +30,9 @@ export async function copyText(text, button) {
   setTimeout(() => { button.textContent = words; }, 1500);
 }
 
+// A word of a shell's command, in quotes where it needs them.
+export const shellWord = text => /^[\w.+:@%/][\w.+:@%/-]*$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
+
 // Three significant digits, with commas.
 const numbers = new Intl.NumberFormat("en", {maximumFractionDigits: 6});
 export const shortNumber = x => numbers.format(Number(x.toPrecision(3)));

@@ -70,9 +70,7 @@ export function newAsteroids(given) {
     drawAhead,
     // The next body, with the seed that is shown, or the one after it where that was drawn. The cores change places.
     async next() {
-      const next = wanted(), key = JSON.stringify(next);
-      at("draw-seed").value = next.seed;
-      isDrawn = true;
+      const shown = at("draw-seed").value, next = wanted(), key = JSON.stringify(next);
       if (!ahead || ahead.key !== key) {
         if (ahead) cores.ahead.stop("replaced");
         ahead = {key, body: made(cores.ahead, next)};
@@ -80,6 +78,10 @@ export function newAsteroids(given) {
       const {body} = ahead;
       ahead = null;
       const drawn = await body;
+      if (at("draw-seed").value === shown) {  // else another was typed meanwhile
+        at("draw-seed").value = next.seed;
+        isDrawn = true;
+      }
       [cores.main, cores.ahead] = [cores.ahead, cores.main];
       return drawn;
     },

@@ -56,11 +56,11 @@ export class EditedRecipe {
     this.off = new Set([...this.off].map(moved).filter(at => at >= 0));
   }
 
-  // The text that the core reads.
-  text() {
-    if (this.off.size === 0) return recipeText.write(this.document) + "\n";
-    const layers = this.document.layers.filter((_, at) => !this.off.has(at));
-    return recipeText.write({...this.document, layers}) + "\n";
+  // The text that the core reads, of this document or of one with as many layers.
+  text(document = this.document) {
+    if (this.off.size === 0) return recipeText.write(document) + "\n";
+    const layers = document.layers.filter((_, at) => !this.off.has(at));
+    return recipeText.write({...document, layers}) + "\n";
   }
 
   // The position in the document of a layer of the text.

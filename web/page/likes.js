@@ -1,4 +1,4 @@
-// Six bodies of the kind of the one that is open, as small pictures: what synth --like --seed makes. A press takes one.
+// Six bodies of the kind of the one that is open, as small pictures: what synth --laid --seed makes. A press takes one.
 import {element} from "./dom.js";
 
 const CELLS = 32, SIDE = 200;
@@ -6,17 +6,14 @@ const CELLS = 32, SIDE = 200;
 export function likesStrip(container, {cores, stage, recipe, take}) {
   let round = 0;  // of which pictures are still wanted
 
+  // The arrangement "like" takes five times as long.
   function another(document, seed) {
-    const layers = (document.layers || []).map(layer => layer.type === "relief" ? {...layer, arrangement: "like"} : layer);
+    const layers = (document.layers || []).map(layer => layer.type === "relief" ? {...layer, arrangement: "laid"} : layer);
     return {...document, seed, ...(layers.length > 0 ? {layers} : {})};
   }
-  const withSeed = () => {
-    const {document} = recipe();
-    return another(document, Math.floor(Math.random() * 2 ** 31));
-  };
 
-  async function picture(button, document, number) {
-    const mesh = await cores.ahead.lasting("make", new TextEncoder().encode(JSON.stringify(document)), recipe().name, CELLS);
+  async function picture(button, text, number) {
+    const mesh = await cores.ahead.lasting("make", new TextEncoder().encode(text), recipe().name, CELLS);
     if (number !== round) return;
     const canvas = element("canvas", {width: SIDE, height: SIDE});
     stage.thumbnail(mesh, canvas);
@@ -27,14 +24,14 @@ export function likesStrip(container, {cores, stage, recipe, take}) {
     const number = ++round;
     container.hidden = false;
     const made = Array.from({length: 6}, (_, i) => {
-      const document = withSeed(), button = element("button", {type: "button", textContent: "…", ariaLabel: `take body ${i + 1} of the six`});
+      const document = another(recipe().document, Math.floor(Math.random() * 2 ** 31)), text = recipe().text(document), button = element("button", {type: "button", textContent: "…", ariaLabel: `take body ${i + 1} of the six`});
       button.onclick = () => take(document);
-      return {document, button};
+      return {text, button};
     });
     container.replaceChildren(...made.map(({button}) => button));
-    for (const {document, button} of made) {
+    for (const {text, button} of made) {
       if (number !== round) return;
-      await picture(button, document, number).catch(error => { button.textContent = error.stopped ? "" : "no such body"; });
+      await picture(button, text, number).catch(error => { button.textContent = error.stopped ? "" : "no such body"; });
     }
   }
   function clear() {

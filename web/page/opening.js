@@ -20,11 +20,15 @@ export async function droppedFiles(transfer) {
   return (await Promise.all(entries.map(filesIn))).flat();
 }
 
-// What the files hold: {kind: "recipe", bytes, name, images}, {kind: "mesh", bytes, name}, or {kind: "none", words}.
+// Images as a core takes them.
+export const imagesIn = files => Promise.all(files.map(async file => ({name: file.name, bytes: await bytesIn(file)})));
+
+// What the files hold: {kind: "recipe", bytes, name, images, words}, where the images are files that the recipe may name,
+// {kind: "mesh", bytes, name}, or {kind: "none", words}.
 export async function sortedFiles(files) {
   const recipes = files.filter(({name}) => RECIPES.test(name)), meshes = files.filter(({name}) => MESHES.test(name));
   if (recipes.length > 0) {
-    const images = await Promise.all(files.filter(({name}) => IMAGES.test(name)).map(async file => ({name: file.name, bytes: await bytesIn(file)})));
+    const images = files.filter(({name}) => IMAGES.test(name));
     // Of several recipes that is taken which is named as an image of a relief is, or else the first.
     const [recipe] = recipes.filter(({name}) => images.some(image => image.name.startsWith(name.replace(/\.\w+$/, ".")))).concat(recipes);
     const words = recipes.length > 1 ? `${recipes.length} recipes were dropped; this is ${recipe.name}` : "";

@@ -1,5 +1,5 @@
 // The page: what its parts do together. The page's data are {worker, schema, knobs, examples, library, wall, population}.
-import {at, element, download, copyText} from "./dom.js";
+import {at, element, download, copyText, shellWord} from "./dom.js";
 import {recipeText} from "./recipe_text.js";
 import {EditedRecipe} from "./edited_recipe.js";
 import {schemaValues} from "./schema_values.js";
@@ -11,7 +11,7 @@ import {CoreClient} from "./core_client.js";
 import {BodyMaker} from "./body_maker.js";
 import {Stage} from "./stage.js";
 import {newAsteroids} from "./draws.js";
-import {droppedFiles, sortedFiles} from "./opening.js";
+import {droppedFiles, sortedFiles, imagesIn} from "./opening.js";
 import {recordTurn} from "./film.js";
 import {printedMesh} from "./printed_mesh.js";
 import {likesStrip} from "./likes.js";
@@ -170,14 +170,24 @@ async function startPage() {
     soon = setTimeout(() => maker.running ? drawSoon() : asteroids.drawAhead(), AHEAD_MS);
   }
 
-  // The document in the bytes of a file. The core reads it first, and refuses what is no recipe. The fields that a JSON recipe
-  // leaves out stay out.
-  async function documentOf(bytes, name) {
-    const json = await cores.main.lasting("writeRecipe", bytes, name, "json");
+  // Images in the place of those that all cores have. The calls of a core wait for its images.
+  async function giveImages(images) {
+    const {main, ...others} = cores;
+    Object.values(others).forEach(core => core.give(images).catch(() => {}));  // main says the same
+    await main.give(images);
+  }
+
+  // The document in the bytes of a file. The core reads it first, and refuses what is no recipe. Of the files beside it those
+  // that it names are given to the cores. The fields that a JSON recipe leaves out stay out.
+  async function documentOf(bytes, name, files) {
+    const written = async () => new TextDecoder().decode((await cores.main.lasting("writeRecipe", bytes, name, "json")).bytes);
+    await giveImages([]);
+    const json = await written(), named = files.filter(file => json.includes(file.name));
+    if (named.length > 0) await giveImages(await imagesIn(named));
     const isCompact = bytesText(bytes.subarray(0, 3)) === "AST";
-    const document = recipeText.read(new TextDecoder().decode(bytes.length > 0 && !isCompact ? bytes : json.bytes));
+    const document = recipeText.read(bytes.length > 0 && !isCompact ? new TextDecoder().decode(bytes) : json);
     const hasImages = !isCompact && (document.layers || []).some(layer => layer.type === "relief" && layer.image);
-    return hasImages ? recipeText.read(new TextDecoder().decode(json.bytes)) : document;  // the heights lie in the recipe then
+    return hasImages ? recipeText.read(await written()) : document;  // the heights lie in the recipe then
   }
 
   // Shows a document; `mesh` is its coarse mesh where that was made before.
@@ -204,16 +214,18 @@ async function startPage() {
     await draw({opens: !mesh, mesh: at("values").value ? null : mesh});
   }
 
-  // Opens the bytes of a file, given or promised. One that holds no recipe leaves the page as it is, but for the message; of
-  // several that are opened at once the last counts.
-  async function openBytes(given, name, more = {}) {
-    const number = ++opened;
+  // Opens the bytes of a file, given or promised, with the images beside it. One that holds no recipe leaves the page as it
+  // is, but for the message; of several that are opened at once the last counts.
+  async function openBytes(given, name, {images = [], ...more} = {}) {
+    const number = ++opened, {images: before} = cores.main;
     await maker.stop("replaced");
     let read;
     try {
-      read = await documentOf(await given, name);
+      read = await documentOf(await given, name, images);
     } catch (error) {
-      if (number === opened && !error.stopped) tellRefusal(error.message);
+      if (number !== opened) return false;
+      if (!error.stopped) tellRefusal(error.message);
+      giveImages(before).catch(() => {});  // the recipe that stays may need them
       return false;
     }
     if (number !== opened) return false;
@@ -231,8 +243,9 @@ async function startPage() {
   }
 
   async function openMesh({bytes, name}) {
-    const fit = `fit_shape ${name} -o ${name.replace(/\.\w+$/, "")}.json`;
-    const words = element("p", {textContent: `${name} is a mesh. It is shown beside the body, turning with it. To make a recipe of it that you can change here, run this where the programs are, and drop the recipe that it writes:`});
+    const fit = `fit_shape ${shellWord(name)} -o ${shellWord(name.replace(/\.\w+$/, "") + ".json")}`;
+    const words = element("p", {textContent: `${name} is a mesh. It is shown beside the body, turning with it. ` +
+      "To make a recipe of it that you can change here, run this where the programs are, and drop the recipe that it writes:"});
     const command = element("pre", {textContent: fit, tabIndex: 0}), copy = element("button", {type: "button", textContent: "Copy the command"});
     copy.onclick = () => copyText(fit, copy);
     showBody(true);
@@ -268,12 +281,7 @@ async function startPage() {
     const given = await sortedFiles(files);
     if (given.kind === "none") return tellRefusal(given.words);
     if (given.kind === "mesh") return openMesh(given);
-    try {
-      await Promise.all(Object.values(cores).map(core => core.give(given.images)));
-    } catch (error) {
-      return tellRefusal(error.message);
-    }
-    await openBytes(given.bytes, given.name, {words: given.words});
+    await openBytes(given.bytes, given.name, {words: given.words, images: given.images});
   }
   at("file").onchange = () => {
     const files = [...at("file").files];
@@ -392,18 +400,24 @@ async function startPage() {
 
   // The command that makes the same mesh where the programs are.
   async function tellCommand() {
-    const output = `-o ${stem()}.glb --resolution ${finest()}`, [name, text] = unchanged.split(/\n([\s\S]*)/);
+    const output = `-o ${shellWord(stem() + ".glb")} --resolution ${finest()}`, file = shellWord(stem() + ".astro");
+    const [name, text] = unchanged.split(/\n([\s\S]*)/);
     if (name && text === recipe.text()) return void (at("command").textContent = `synth ${name} ${output}`);
     const {bytes} = await recipeFile("astro").catch(() => ({bytes: new Uint8Array()}));
-    at("command").textContent = `echo ${btoa(bytesText(bytes))} | base64 -d > ${stem()}.astro\nsynth ${stem()}.astro ${output}`;
+    at("command").textContent = `echo ${btoa(bytesText(bytes))} | base64 -d > ${file}\nsynth ${file} ${output}`;
   }
   at("copy-command").onclick = () => copyText(at("command").textContent, at("copy-command"));
 
+  let filming = new AbortController();  // of the film that is recorded
   const saves = {
     json: () => download(new Blob([recipe.text()], {type: "application/json"}), `${stem()}.json`),
     astro: async () => download(new Blob([(await recipeFile("astro")).bytes]), `${stem()}.astro`),
     png: () => new Promise(done => stage.picture(3840, 2160).toBlob(done, "image/png")).then(blob => download(blob, `${stem()}.png`)),
-    film: async () => download(await waitedFor(recordTurn(stage)), `${stem()}.webm`),
+    film: async () => {
+      filming.abort();
+      filming = new AbortController();
+      download(await waitedFor(recordTurn(stage, filming)), `${stem()}.webm`);
+    },
     stl: async () => {
       const mesh = await waitedFor(cores.fine.lasting("make", encoded(recipe.text()), recipe.name, finest()));
       download(new Blob([printedMesh(mesh, Number(at("print-size").value) || 80)], {type: "model/stl"}), `${stem()}.stl`);
@@ -423,7 +437,7 @@ async function startPage() {
 
   // -- the rest -------------------------------------------------------------------------------------------------------------
 
-  at("stop").onclick = () => { maker.stop("user"); asteroids.stop(); };
+  at("stop").onclick = () => { maker.stop("user"); asteroids.stop(); filming.abort(); };
   at("resolution").onchange = () => draw();
   at("values").onchange = () => draw();
   cores.main.lasting("version").then(version => { at("version").textContent = `Astrolith ${version}.`; }, refuse);
@@ -450,6 +464,7 @@ async function startPage() {
   // The recipe of the link, or that of the page, or what this tab showed before it was loaded again; else the wall.
   async function openFirst() {
     const link = location.hash.match(/^#r=(.*)$/), own = JSON.parse(at("recipe").textContent), early = window.earlyChoice;
+    delete window.earlyChoice;
     if (link) return openLink(link[1]);
     if (early) return early === "new" ? drawNext().catch(refuse) : openFromWall(document.querySelector(`[data-name=${early}]`));
     if (kept.wasShown() && await openKept()) return true;

@@ -1,3 +1,22 @@
+// The bytes that parts of a deflated stream hold, where they are `count`; of more or fewer the words that refuse them.
+async function inflatedParts(parts, count, refused) {
+  "use strict";
+  const reader = new Blob(parts).stream().pipeThrough(new DecompressionStream("deflate")).getReader(), bytes = new Uint8Array(count);
+  let taken = 0;
+  for (;;) {
+    const {done, value} = await reader.read().catch(() => { throw refused("is damaged, or ends too early; save it again"); });
+    if (done) break;
+    if (taken + value.length > count) {
+      reader.cancel().catch(() => {});
+      throw refused("holds more bytes than its pixels have; save it again");
+    }
+    bytes.set(value, taken);
+    taken += value.length;
+  }
+  if (taken < count) throw refused("ends too early; save it again");
+  return bytes;
+}
+
 // The pixels of a PNG file of 8 or 16 bits in full depth, which pictures of the browser have not: {width, height, values, rgb},
 // grey values or the luma of colours from 0 to 65535, as the programs decode them.
 export async function decodedPng(bytes, name) {
@@ -7,7 +26,7 @@ export async function decodedPng(bytes, name) {
   if (bytes.length < 33 || view.getUint32(0) !== 0x89504e47) throw refused("is no PNG; convert it");
   const width = view.getUint32(16), height = view.getUint32(20), depth = bytes[24], kind = bytes[25];
   const channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[kind];
-  if (!channels || depth < 8 || bytes[28] !== 0) throw refused("is interlaced, or has fewer than 8 bits; save it as plain PNG of 8 or 16 bits");
+  if (!channels || (depth !== 8 && (depth !== 16 || kind === 3)) || bytes[28] !== 0) throw refused("is interlaced, or has fewer than 8 bits; save it as plain PNG of 8 or 16 bits");
   if (width * height > 2 ** 26) throw refused(`is ${width} x ${height} pixels; scale it down`);
 
   const parts = [];
@@ -15,12 +34,11 @@ export async function decodedPng(bytes, name) {
   for (let at = 8; at + 12 <= bytes.length;) {
     const length = view.getUint32(at), type = String.fromCharCode(...bytes.subarray(at + 4, at + 8)), data = bytes.subarray(at + 8, at + 8 + length);
     if (type === "IDAT") parts.push(data);
-    if (type === "PLTE") palette = data;
+    if (type === "PLTE" && kind === 3) palette = data;  // colours may have one, too, as a mere proposal
     at += 12 + length;
   }
-  const stream = new Blob(parts).stream().pipeThrough(new DecompressionStream("deflate"));
-  const raw = new Uint8Array(await new Response(stream).arrayBuffer()), step = channels * depth / 8, row = width * step;
-  if (raw.length < height * (row + 1)) throw refused("ends too early; save it again");
+  if (kind === 3 && !palette) throw refused("lacks its palette; save it again");
+  const step = channels * depth / 8, row = width * step, raw = await inflatedParts(parts, height * (row + 1), refused);
 
   // Each row is stored as differences from its neighbours.
   const plain = new Uint8Array(height * row);
