@@ -33,7 +33,8 @@ struct Quadrics {
   explicit Quadrics(std::size_t side) {
     const double middle = 0.5 * static_cast<double>(side - 1);
     for (std::size_t k = 0; k < side * side; ++k) {
-      const double x = static_cast<double>(k % side) - middle, y = static_cast<double>(k / side) - middle;
+      const std::size_t column = k % side, row = k / side;
+      const double x = static_cast<double>(column) - middle, y = static_cast<double>(row) - middle;
       const double values[kTerms] = {1.0, x, y, x * x, x * y, y * y};
       for (std::size_t t = 0; t < kTerms; ++t) terms[t].push_back(values[t]);
     }
@@ -171,8 +172,8 @@ PlaceMeans::PlaceMeans(const PatchSamples& patches, std::size_t places)
   const double width = 0.25 * static_cast<double>(grid.side), middle = grid.middle();
   std::vector<float> window(grid.samples());
   for (std::size_t k = 0; k < window.size(); ++k) {
-    const double x = static_cast<double>(k % grid.side) - middle,
-                 y = static_cast<double>(k / grid.side) - middle;
+    const std::size_t column = k % grid.side, row = k / grid.side;
+    const double x = static_cast<double>(column) - middle, y = static_cast<double>(row) - middle;
     window[k] = static_cast<float>(portable::exp(-0.5 * (x * x + y * y) / (width * width)));
   }
   for (const std::uint32_t place : patches.places_) ++first_[place + 1];
