@@ -48,7 +48,7 @@ from_package() {
 }
 
 from_sources() {
-  echo "No wheels and no package of this version are taken: building takes some 9 processor minutes"
+  echo "No wheels and no package of this version are taken: building takes ten processor minutes and more"
   scripts/setup.sh
   scripts/build.sh release fit_gabor fit_shape fit_population synth describe compare classify gravity render check_tiles
   bin=build/release/bin taken="this build, $bin"

@@ -81,8 +81,9 @@ std::vector<PatchScale> make_scales(const SurfaceValues& measured, const ReliefP
     PatchSamples samples(points, grid, count, hash = hash_append(hash, 1));
     if (std::min(theirs.patches(), samples.patches()) < kFewestPatches) continue;
     PlaceMeans means(samples, points.size());
-    scales.push_back(
-        {std::move(samples), means, {theirs.of(measured.values, 1.0 / edge), grid.samples(), kRidge}});
+    scales.push_back({std::move(samples),
+                      std::move(means),
+                      {theirs.of(measured.values, 1.0 / edge), grid.samples(), kRidge}});
   }
   return scales;
 }
