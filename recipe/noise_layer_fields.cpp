@@ -53,9 +53,11 @@ std::shared_ptr<const ExemplarImage> relief_pixels(const ReliefLayer& layer, std
   }
 }
 
-constexpr Noise kWorleyNoises[] = {Noise::kWorleyF1, Noise::kWorleyF2, Noise::kWorleyF2MinusF1};
+constexpr Noise kWorleyNoises[] = {Noise::kWorleyF1, Noise::kWorleyF2, Noise::kWorleyF2MinusF1,
+                                   Noise::kWorleyBlocks};
 std::string_view distance_word(Noise noise) {
-  return noise == Noise::kWorleyF1 ? "f1" : noise == Noise::kWorleyF2 ? "f2" : "f2-f1";
+  constexpr std::string_view kWords[] = {"f1", "f2", "f2-f1", "blocks"};
+  return kWords[static_cast<std::size_t>(noise) - static_cast<std::size_t>(Noise::kWorleyF1)];
 }
 
 void check_modulation(const FractalLayer& layer, const Place& place) {

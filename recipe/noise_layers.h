@@ -100,9 +100,9 @@ struct StatedHeight {
 };
 
 // Simplex and Perlin noise lie in [-1, 1]. Worley noise is the distance to the nearest feature point (F1), to
-// the second nearest (F2) or the difference of both, less its mean, and spans a range of length 1. Every
-// noise has zero mean.
-enum class Noise { kSimplex, kPerlin, kWorleyF1, kWorleyF2, kWorleyF2MinusF1 };
+// the second nearest (F2) or the difference of both, less its mean, and spans a range of length 1. Each of
+// these has zero mean. Blocks around feature points are 0 outside and 1 in their middle (block_noise.h).
+enum class Noise { kSimplex, kPerlin, kWorleyF1, kWorleyF2, kWorleyF2MinusF1, kWorleyBlocks };
 
 inline constexpr bool is_worley(Noise noise) { return noise != Noise::kSimplex && noise != Noise::kPerlin; }
 

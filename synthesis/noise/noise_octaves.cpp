@@ -119,6 +119,8 @@ void add_octave(Noise noise, const NoiseOctave& octave, int n, const float* x, c
       return add_noise<worley_f2>(octave, n, x, y, z, sum);
     case Noise::kWorleyF2MinusF1:
       return add_noise<worley_f2_minus_f1>(octave, n, x, y, z, sum);
+    case Noise::kWorleyBlocks:
+      return add_noise<block_noise>(octave, n, x, y, z, sum);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "numerics/interval.h"
+#include "synthesis/noise/block_noise.h"
 #include "synthesis/noise/noise_octaves.h"
 #include "synthesis/noise/perlin_noise.h"
 #include "synthesis/noise/simplex_noise.h"
@@ -51,8 +52,10 @@ ASTROLITH_HD inline float with_octave(Noise noise, const NoiseOctave& o, const V
       return with_octave<worley_f1>(o, p.x, p.y, p.z, sum);
     case Noise::kWorleyF2:
       return with_octave<worley_f2>(o, p.x, p.y, p.z, sum);
-    default:
+    case Noise::kWorleyF2MinusF1:
       return with_octave<worley_f2_minus_f1>(o, p.x, p.y, p.z, sum);
+    default:
+      return with_octave<block_noise>(o, p.x, p.y, p.z, sum);
   }
 }
 ASTROLITH_HD inline ModulatedSum with_modulated_octave(Noise noise, const NoiseOctave& o, float modulation,
@@ -64,7 +67,7 @@ ASTROLITH_HD inline ModulatedSum with_modulated_octave(Noise noise, const NoiseO
 
 // The range of a noise and its Lipschitz bound, per unit of the argument. A search over all positions and
 // gradients found the largest slopes 6.960 (simplex) and 3.619 (Perlin). A distance, as in Worley noise, has
-// the Lipschitz constant 1.
+// the Lipschitz constant 1; no face of a block is steeper than the nearest.
 struct NoiseRange {
   double low, high, slope;
 };
@@ -79,8 +82,10 @@ ASTROLITH_HD inline NoiseRange noise_range(Noise noise) {
       return {-kF1, 1.0 - kF1, kSlope};
     case Noise::kWorleyF2:
       return {-kF2, 1.0 - kF2, kSlope};
-    default:
+    case Noise::kWorleyF2MinusF1:
       return {kF1 - kF2, 1.0 + kF1 - kF2, 2.0 * kSlope};
+    default:
+      return {0.0, 1.0, kBlockHeight};
   }
 }
 

@@ -126,5 +126,6 @@ int main(int argc, char** argv) {
     print("perlin", Noise::kPerlin, 1);
     print("fbm", Noise::kSimplex, 5);
     print("worley_f1", Noise::kWorleyF1, 1);
+    print("worley_blocks", Noise::kWorleyBlocks, 1);
   }
 }

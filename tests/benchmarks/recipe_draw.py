@@ -97,7 +97,7 @@ class Draw:
                                 "lacunarity": self.uniform(1.3, 4), "scale": self.vector(0.2, 3),
                                 "bias": [self.size * c for c in self.vector(-2, 2)], "weight": self.uniform(-1.5, 1.5)}))
         if kind == "worley":
-            layer.update(self.some({"distance": self.choice(["f1", "f2", "f2-f1"])}))
+            layer.update(self.some({"distance": self.choice(["f1", "f2", "f2-f1", "blocks"])}))
         else:
             layer.update(self.some({"gradient_modulation": self.uniform(0, 4)}))
         if self.chance(0.25):

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "synthesis/noise/block_noise.h"
 #include "synthesis/noise/sparse_noise.h"
 #include "synthesis/noise/worley_noise.h"
 #include "tests/support/points.h"
@@ -63,6 +64,53 @@ TEST(WorleyNoise, ChangesNoFasterThanDistances) {
     ASSERT_LE(std::fabs(worley_f1(q.x, q.y, q.z, 1u) - worley_f1(p.x, p.y, p.z, 1u)), way);
     ASSERT_LE(std::fabs(worley_f2(q.x, q.y, q.z, 1u) - worley_f2(p.x, p.y, p.z, 1u)), way);
   }
+}
+
+TEST(BlockNoise, IsTheDepthInTheDeepestOfAllBlocks) {
+  CounterRandom random(3);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3f p = random_place(random, 100.0);
+    const float x = std::floor(p.x), y = std::floor(p.y), z = std::floor(p.z);
+    constexpr float kOffset = 1.5f * kWorleyJitter - 0.5f;
+    float deepest = 0.0f;
+    for (int c = 0; c < 125; ++c) {
+      const float a = static_cast<float>(c % 5 - 2), b = static_cast<float>(c / 5 % 5 - 2),
+                  e = static_cast<float>(c / 25 - 2);
+      deepest = std::max(deepest, block_depth(lattice_point(x + a, y + b, z + e, 8u), p.x - x + kOffset - a,
+                                              p.y - y + kOffset - b, p.z - z + kOffset - e));
+    }
+    ASSERT_EQ(block_noise(p.x, p.y, p.z, 8u), deepest);
+  }
+}
+
+TEST(BlockNoise, CoversTheStatedShareWithTheStatedMean) {
+  constexpr int n = 400000;
+  int within = 0;
+  const testing::NoiseStatistics s = testing::noise_statistics(
+      [&](float x, float y, float z, std::uint32_t seed) {
+        const float depth = block_noise(x, y, z, seed);
+        within += depth > 0.0f;
+        return depth;
+      },
+      n);
+  EXPECT_EQ(s.least, 0.0);
+  EXPECT_GT(s.greatest, 0.95);
+  EXPECT_LE(s.greatest, 1.0);
+  EXPECT_NEAR(s.mean, kBlockMean, 0.001);
+  EXPECT_NEAR(s.deviation, kBlockDeviation, 0.001);
+  EXPECT_NEAR(static_cast<double>(within) / n, kBlockCover, 0.002);
+}
+
+TEST(BlockNoise, IsNowhereSteeperThanTheNearestFaces) {
+  CounterRandom random(4);
+  double steepest = 0.0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec3f p = random_place(random, 4.0), q = p + random_place(random, 0.01);
+    const double change = std::fabs(block_noise(q.x, q.y, q.z, 1u) - block_noise(p.x, p.y, p.z, 1u));
+    steepest = std::max(steepest, (change - 1e-6) / static_cast<double>(norm(q - p)));
+  }
+  EXPECT_LE(steepest, static_cast<double>(kBlockHeight));
+  EXPECT_GT(steepest, 0.9 * static_cast<double>(kBlockHeight));
 }
 
 // Feature points of neighbouring cells are independent, so that the noise prefers no direction but the axes

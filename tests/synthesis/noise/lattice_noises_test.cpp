@@ -151,8 +151,8 @@ TEST(SimplexNoise, IsZeroAtLatticeCorners) {
   EXPECT_NEAR(simplex_noise(-1.0f, 1.0f, 0.0f, 5u), 0.0f, 1e-5f);
 }
 
-constexpr Noise kNoises[] = {Noise::kSimplex, Noise::kPerlin, Noise::kWorleyF1, Noise::kWorleyF2,
-                             Noise::kWorleyF2MinusF1};
+constexpr Noise kNoises[] = {Noise::kSimplex,  Noise::kPerlin,          Noise::kWorleyF1,
+                             Noise::kWorleyF2, Noise::kWorleyF2MinusF1, Noise::kWorleyBlocks};
 const Box kFractalDomain{{-10, -10, -10}, {10, 10, 10}};
 
 struct Heights : testing::FloatPoints {
@@ -169,7 +169,7 @@ struct Heights : testing::FloatPoints {
 FractalLayer random_layer(CounterRandom& random) {
   FractalLayer layer = testing::fractal_layer(random.uniform(-2, 2), random.uniform(0.1, 4),
                                               1 + static_cast<int>(random.below(6)));
-  layer.noise = kNoises[random.below(5)];
+  layer.noise = kNoises[random.below(std::size(kNoises))];
   layer.gain = random.uniform(0.2, 1.2);
   layer.scale = {random.uniform(-2, 2), 1.0, random.uniform(0.5, 1.5)};
   layer.bias = {random.uniform(-3, 3), 0.0, 1.0};
@@ -194,7 +194,8 @@ TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
                                                        {Noise::kPerlin, perlin_noise},
                                                        {Noise::kWorleyF1, worley_f1},
                                                        {Noise::kWorleyF2, worley_f2},
-                                                       {Noise::kWorleyF2MinusF1, worley_f2_minus_f1}};
+                                                       {Noise::kWorleyF2MinusF1, worley_f2_minus_f1},
+                                                       {Noise::kWorleyBlocks, block_noise}};
   for (const auto& [noise, function] : kFunctions) {
     FractalLayer layer = testing::fractal_layer(1.0, 1.0, 1);
     layer.noise = noise;
