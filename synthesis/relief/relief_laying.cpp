@@ -169,11 +169,12 @@ class PatchLaying {
   }
 
   void lay(const ReliefAnchor& anchor, std::uint32_t hash) {
-    constexpr std::size_t kCandidates = 16;
+    constexpr std::size_t kCandidates = 16, kSomePoints = 64, kEnoughPoints = 256;
     const std::vector<PatchPoint> around = points_around(points_, anchor, patches_.anchor_spacing().radius());
     const std::vector<ReliefDonor> candidates = donors_.candidates(anchor, kCandidates, hash);
     if (candidates.empty()) return;
-    blend(read(around, candidates[most_agreeing(around, candidates)]));
+    const std::vector<ReliefDonor> better = most_agreeing(around, kSomePoints, candidates, kCandidates / 4);
+    blend(read(around, most_agreeing(around, kEnoughPoints, better, 1)[0]));
   }
 
  private:
@@ -182,35 +183,43 @@ class PatchLaying {
   double agreeing(std::uint32_t place) const { return laid_[place].sum() - double{laid_[place].height[0]}; }
 
   // Some of the points that have been laid already.
-  std::vector<PatchPoint> find_overlap(const std::vector<PatchPoint>& around) const {
-    constexpr std::size_t kEnough = 256;
+  std::vector<PatchPoint> find_overlap(const std::vector<PatchPoint>& around, std::size_t enough) const {
     std::vector<PatchPoint> overlap, some;
     for (const PatchPoint& p : around) {
       if (is_laid(p.number)) overlap.push_back(p);
     }
-    const std::size_t stride = 1 + overlap.size() / kEnough;
+    const std::size_t stride = 1 + overlap.size() / enough;
     for (std::size_t i = 0; i < overlap.size(); i += stride) some.push_back(overlap[i]);
     return some;
   }
 
-  std::size_t most_agreeing(const std::vector<PatchPoint>& around,
-                            const std::vector<ReliefDonor>& candidates) const {
-    const std::vector<PatchPoint> overlap = find_overlap(around);
-    std::vector<double> costs(candidates.size(), 0.0);
-    parallel_for(0, static_cast<std::int64_t>(candidates.size()), [&](std::int64_t number) {
-      const auto c = static_cast<std::size_t>(number);
-      const ReliefRows rows = patches_.rows_at(overlap, candidates[c].middle, candidates[c].turn);
-      double differences = 0.0, squares = 0.0;
-      for (std::size_t i = 0; i < overlap.size(); ++i) {
-        const double old = agreeing(overlap[i].number);
-        const double own = rows.any(i) ? rows.of(agreeing_, i) : -old;
-        const double weight = overlap[i].facing * overlap[i].facing;
-        differences += weight * (own - old) * (own - old);
-        squares += weight * (own * own + old * old);
-      }
-      costs[c] = squares > 0.0 ? differences / squares : 0.0;
+  // How much a donor differs from the heights that have been laid, over the squares of both.
+  double difference(const std::vector<PatchPoint>& overlap, const ReliefDonor& donor) const {
+    const ReliefRows rows = patches_.rows_at(overlap, donor.middle, donor.turn);
+    double differences = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < overlap.size(); ++i) {
+      const double old = agreeing(overlap[i].number);
+      const double own = rows.any(i) ? rows.of(agreeing_, i) : -old;
+      const double weight = overlap[i].facing * overlap[i].facing;
+      differences += weight * (own - old) * (own - old);
+      squares += weight * (own * own + old * old);
+    }
+    return squares > 0.0 ? differences / squares : 0.0;
+  }
+
+  // The `count` donors that differ least at some of the points around an anchor, the best first.
+  std::vector<ReliefDonor> most_agreeing(const std::vector<PatchPoint>& around, std::size_t enough,
+                                         const std::vector<ReliefDonor>& donors, std::size_t count) const {
+    const std::vector<PatchPoint> overlap = find_overlap(around, enough);
+    std::vector<std::pair<double, std::size_t>> costs(donors.size());
+    parallel_for(0, static_cast<std::int64_t>(donors.size()), [&](std::int64_t number) {
+      const auto d = static_cast<std::size_t>(number);
+      costs[d] = {difference(overlap, donors[d]), d};
     });
-    return static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    std::sort(costs.begin(), costs.end());
+    std::vector<ReliefDonor> best;
+    for (std::size_t k = 0; k < std::min(count, costs.size()); ++k) best.push_back(donors[costs[k].second]);
+    return best;
   }
 
   std::vector<LaidPoint> read(const std::vector<PatchPoint>& around, const ReliefDonor& donor) const {

@@ -114,7 +114,10 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
     heights = like_heights(ground.places, ground.tiles, patches, layer.donor.has_value(), layer.spacing,
                            options, source.place);
     const std::vector<double> own = layer.donor ? std::vector(heights.size(), 0.0) : measured.heights;
-    keep_room(body, ReliefPoints(ground.places, lattice_spacing(layer)), scale, own, heights);
+    if (layer.donor)
+      keep_room(body, ReliefPoints(ground.places, lattice_spacing(layer)), scale, own, heights);
+    else
+      keep_room(body, patches.points(), scale, own, heights);
     encode(heights, scale, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
