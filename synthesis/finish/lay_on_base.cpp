@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "numerics/errors.h"
+#include "synthesis/body/body_tables.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/relief/relief_noise.h"
 
 namespace astrolith {
 namespace {
@@ -114,6 +116,25 @@ Layer rescaled(const Layer& layer, double ratio) {
   if (use->mask) use->mask->rescale(ratio);
   use->combination.width *= ratio;
   return result;
+}
+
+Recipe with_own_heights(Recipe recipe, const std::string& name) {
+  ArrayStore arrays;
+  const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
+  const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+  bool any = false;
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    auto* relief = std::get_if<ReliefLayer>(&recipe.layers[i]);
+    if (relief == nullptr) continue;
+    if (relief->arrangement == ReliefArrangement::kMeasured && !relief->fill_unseen) continue;
+    const int index = static_cast<int>(i);
+    const LayerSource source{recipe, layer_number(relief->seed, index),
+                             fmt::format("{}: layers[{}]", name, index)};
+    *relief = with_own_heights(*relief, source, {body, arrays.view(), metaballs.lists()});
+    any = true;
+  }
+  if (any) return recipe;
+  throw InputError(name + ": layers: no relief draws its heights; add --like, --laid or --fill-unseen");
 }
 
 }  // namespace astrolith

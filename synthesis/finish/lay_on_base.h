@@ -29,6 +29,10 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
 // they are not already drawn from a third.
 Layer drawn_from(const MetaballBody& measured, const Layer& layer);
 
+// The recipe with the heights that its reliefs draw from other places, or fill, as measured ones of its own
+// body. Throws InputError, which begins with `name`, where no relief does.
+Recipe with_own_heights(Recipe recipe, const std::string& name);
+
 // The layer for a body `ratio` times as large, or for a unit of length 1 / ratio times as long.
 Layer rescaled(const Layer& layer, double ratio);
 

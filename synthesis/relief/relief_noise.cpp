@@ -87,17 +87,19 @@ struct ReliefGround {
 
 namespace {
 
-// The heights as codes of their own range.
-void encode(const std::vector<double>& heights, double scale, ReliefGround& ground) {
+// The heights as codes of their own range, a quarter of the layer's step apart where their range allows it.
+void encode(const ReliefLayer& layer, const std::vector<double>& heights, ReliefGround& ground) {
+  constexpr double kMostCode = 65534.0, kFiner = 0.25;
   ground.codes.resize(heights.size());
   if (heights.empty()) return;
+  const double scale = layer.donor_scale;  // heights are in the unit of the donor
   const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
   ground.low = static_cast<float>(scale * *least);
-  ground.step = static_cast<float>(scale * (*most - *least) / 65535.0);
+  ground.step = static_cast<float>(scale * std::max((*most - *least) / kMostCode, kFiner * layer.step()));
   for (std::size_t i = 0; i < heights.size(); ++i) {
     const double code =
         ground.step > 0.0f ? (scale * heights[i] - double{ground.low}) / double{ground.step} : 0.0;
-    ground.codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, 65535.0));
+    ground.codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, kMostCode));
   }
 }
 
@@ -118,10 +120,10 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const BodyGround&
       keep_room(body, ReliefPoints(ground.places, lattice_spacing(layer)), scale, own, heights);
     else
       keep_room(body, patches.points(), scale, own, heights);
-    encode(heights, scale, ground);
+    encode(layer, heights, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
-    encode(heights, scale, ground);
+    encode(layer, heights, ground);
   }
   if (layer.finer == 0) return;
   const ReliefPoints points(ground.places, layer.spacing);
@@ -286,6 +288,24 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
   if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0 && !layer.fill_unseen) return;
   const std::vector<double> heights = decode_heights(layer, codes);
   draw(layer, source, body, {body, places, tiles, heights}, *this);
+}
+
+ReliefLayer with_own_heights(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body) {
+  ReliefGround ground;
+  ground.find(layer, source, body);
+  ReliefLayer own = layer;
+  own.arrangement = ReliefArrangement::kMeasured;
+  own.fill_unseen = false;
+  own.donor.reset();
+  own.rescale(layer.donor_scale);
+  own.donor_scale = 1.0;
+  const auto greatest = std::max_element(ground.codes.begin(), ground.codes.end());
+  own.levels = greatest == ground.codes.end() ? 2 : std::max(2, *greatest + 1);
+  own.low = double{ground.low};
+  own.high = own.low + double{ground.step} * (own.levels - 1);
+  own.image.clear(), own.image_sha256.clear();
+  own.pixels = relief_image(own, ground.places, ground.codes, source.place);
+  return own;
 }
 
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore&) {

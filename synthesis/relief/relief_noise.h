@@ -56,6 +56,10 @@ struct PreparedRelief {
 };
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore& arrays);
 
+// The layer with the heights that it draws or fills as its own: measured ones, of this body. Meshes keep
+// their bytes, but for levels below the model, which are then made of these heights. Throws as placed() does.
+ReliefLayer with_own_heights(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body);
+
 // The noise at a site. Throws InputError, which begins with the source's place, where the layer has no
 // pixels, or where they are not those of the places on this body.
 ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, const LayerSource& source,

@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "numerics/errors.h"
+#include "recipe/compact/height_picture.h"
+
 namespace astrolith {
 namespace {
 
@@ -64,6 +67,27 @@ ReliefLayout relief_layout(const std::vector<ReliefPlace>& places) {
     layout.pixels[i] = static_cast<std::uint32_t>(row * static_cast<std::size_t>(layout.width) + column);
   }
   return layout;
+}
+
+std::shared_ptr<ExemplarImage> relief_image(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
+                                            const std::vector<std::uint16_t>& codes,
+                                            const std::string& where) {
+  const ReliefLayout layout = relief_layout(places);
+  if (std::max(layout.width, layout.height) > kMostHeightPictureSide) {
+    throw InputError(where + ".spacing: would take a picture of heights of more than " +
+                     std::to_string(kMostHeightPictureSide) + " pixels a side on this body; make it larger");
+  }
+  auto image = std::make_shared<ExemplarImage>();
+  // Programs read no image that is smaller.
+  image->width = std::max(layout.width, kLeastExemplarSide),
+  image->height = std::max(layout.height, kLeastExemplarSide);
+  image->values.assign(static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height), 0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t row = layout.pixels[i] / static_cast<std::size_t>(layout.width),
+                      column = layout.pixels[i] % static_cast<std::size_t>(layout.width);
+    image->values[row * static_cast<std::size_t>(image->width) + column] = layer.code_to_grey(codes[i]);
+  }
+  return image;
 }
 
 }  // namespace astrolith

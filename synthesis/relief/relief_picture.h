@@ -5,8 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "recipe/relief_layer.h"
 #include "synthesis/relief/relief_places.h"
 
 namespace astrolith {
@@ -18,5 +21,11 @@ struct ReliefLayout {
 
 // The pixels of places in the order of find_relief_places().
 ReliefLayout relief_layout(const std::vector<ReliefPlace>& places);
+
+// The picture with a code of the layer at each place. Throws InputError, which begins with `where`, where it
+// would have more than kMostHeightPictureSide pixels a side.
+std::shared_ptr<ExemplarImage> relief_image(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
+                                            const std::vector<std::uint16_t>& codes,
+                                            const std::string& where);
 
 }  // namespace astrolith

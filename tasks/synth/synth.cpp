@@ -49,12 +49,13 @@ struct SynthOptions {
   DrawOptions draw;
   bool laid = false;  // whether reliefs are drawn anew, but as `draw.like` is not
   bool fill_unseen = false;
-  std::string count;  // of bodies, an option that --members replaces
-  int finer = 0;      // levels of reliefs below their models
-  double vary = 0.0;  // 0 = the recipe itself
-  fs::path sheet;     // a picture of the baked maps; empty = none
-  fs::path page;      // the folder of a page; empty = none
-  fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
+  bool own_heights = false;  // whether the written recipe holds what its reliefs draw
+  std::string count;         // of bodies, an option that --members replaces
+  int finer = 0;             // levels of reliefs below their models
+  double vary = 0.0;         // 0 = the recipe itself
+  fs::path sheet;            // a picture of the baked maps; empty = none
+  fs::path page;             // the folder of a page; empty = none
+  fs::path target;           // the mesh that a variation is to be like; empty = the recipe's own body
 };
 
 void declare_options(Job& job, SynthOptions& options) {
@@ -132,6 +133,13 @@ void declare_options(Job& job, SynthOptions& options) {
                   "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json")
       .writes(recipe_and_relief);
+  job.options
+      .add_flag(
+          "--own-heights", options.own_heights,
+          "the recipe of --write-recipe holds the heights that --like, --laid or --fill-unseen draw, as "
+          "if they had been measured: its patches and tiles take no longer than those of a measured body, "
+          "and have the same bytes, but for --finer, which goes on from these heights")
+      .needs(job.options.option("--write-recipe"));
   job.options
       .add_option(
           "--page", options.page,
@@ -360,11 +368,17 @@ void synthesize(Job& job, const SynthOptions& options) {
       member.recipe = variation(part, member.recipe, number);
       return member;
     };
+    const auto draw_own = [&](Job& part, std::uint64_t number) {
+      FamilyMember member = draw(part, number);
+      if (options.own_heights) member.recipe = with_own_heights(std::move(member.recipe), file.string());
+      return member;
+    };
     const auto work = mesh.only_predict ? predict_members : make_members;
-    work(job, options.members, mesh, {whole, file, draw});
+    work(job, options.members, mesh, {whole, file, draw_own});
     return write_sheet(options);
   }
-  const Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
+  Recipe made = is_varied ? variation(job, recipe, job.seed) : whole;
+  if (options.own_heights) made = with_own_heights(std::move(made), file.string());
   if (!mesh.sinks.recipe.empty()) write_loaded_recipe(made, mesh.sinks.recipe);
   if (!options.page.empty()) write_page(made, options.recipe, options.page, prefixes);
   if (!mesh.sinks.wanted() && !mesh.only_predict) return;

@@ -144,26 +144,6 @@ void limit_to_samples(const ReliefBlend& blend, std::vector<double>& heights) {
   }
 }
 
-std::shared_ptr<ExemplarImage> draw_heights(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
-                                            const std::vector<std::uint16_t>& codes) {
-  const ReliefLayout layout = relief_layout(places);
-  if (std::max(layout.width, layout.height) > kMostHeightPictureSide) {
-    throw InputError("relief.spacing: would take a picture of heights of more than " +
-                     std::to_string(kMostHeightPictureSide) + " pixels a side on this body; make it larger");
-  }
-  auto image = std::make_shared<ExemplarImage>();
-  // Programs read no image that is smaller.
-  image->width = std::max(layout.width, kLeastExemplarSide),
-  image->height = std::max(layout.height, kLeastExemplarSide);
-  image->values.assign(static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height), 0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::size_t row = layout.pixels[i] / static_cast<std::size_t>(layout.width),
-                      column = layout.pixels[i] % static_cast<std::size_t>(layout.width);
-    image->values[row * static_cast<std::size_t>(image->width) + column] = layer.code_to_grey(codes[i]);
-  }
-  return image;
-}
-
 }  // namespace
 
 std::size_t halve_heights(const std::vector<Vec3d>& points, Recipe& recipe) {
@@ -242,7 +222,7 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   limit_to_samples(blend, heights);
   const double step = options.step > 0.0 ? options.step : kDefaultStep * blend.mean_residual(heights);
   const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
-  layer.pixels = draw_heights(layer, samples.places, codes);
+  layer.pixels = relief_image(layer, samples.places, codes, "relief");
   fit.heights = heights.size();
   fit.base_distance = blend.mean_residual({});
   fit.residual = blend.mean_residual(heights);

@@ -120,6 +120,28 @@ TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
   EXPECT_TRUE(ImplicitField(lay_on_base(measured, "measured", speck, "base")).inside({20.0, 20.0, 20.0}));
 }
 
+TEST(LayOnBase, DrawnHeightsBecomeOnesOwn) {
+  Recipe measured = ball("km", 1.0);
+  ReliefLayer heights = testing::relief_layer(measured, 0.05, -0.02, 0.02,
+                                              [](const Vec3d& p) { return 0.01 * std::sin(40.0 * p.x); });
+  heights.edge = 0.04;
+  measured.layers = {heights};
+  const Recipe laid = lay_on_base(measured, "measured", ball("m", 700.0), "base");
+  const Recipe own = with_own_heights(laid, "laid");
+  const auto& relief = std::get<ReliefLayer>(own.layers.back());
+  EXPECT_EQ(relief.arrangement, ReliefArrangement::kMeasured);
+  EXPECT_FALSE(relief.donor);
+  EXPECT_EQ(relief.spacing, 50.0);
+  EXPECT_EQ(relief.edge, 40.0);
+  const ImplicitField drawn(laid), kept(own);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d p{7.0 * i, std::sqrt(700.0 * 700.0 - 49.0 * i * i), 0.0};
+    EXPECT_EQ(kept.value(p), drawn.value(p));
+  }
+  EXPECT_EQ(testing::refusal_text([&] { with_own_heights(measured, "file"); }),
+            "file: layers: no relief draws its heights; add --like, --laid or --fill-unseen");
+}
+
 // A ball under a relief of edges of this share of its radius.
 Recipe measured_ball(double radius, double edge) {
   Recipe measured = ball("m", radius);
