@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "numerics/cholesky.h"
 #include "numerics/sample_statistics.h"
 #include "numerics/tangent_frame.h"
 
@@ -28,39 +29,21 @@ constexpr std::size_t kQuadric = 6, kDepth = 6, kRim = 7, kLinear = 8, kAll = 11
 // The least-squares problem of N unknowns by its normal equations.
 template <std::size_t N>
 struct LeastSquares {
-  std::array<std::array<double, N>, N> matrix{};
+  std::array<double, N * N> matrix{};
   std::array<double, N> right{};
 
   void add(const std::array<double, N>& row, double value, double weight) {
     for (std::size_t i = 0; i < N; ++i) {
       const double w = weight * row[i];
       right[i] += w * value;
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += w * row[j];
+      for (std::size_t j = 0; j <= i; ++j) matrix[i * N + j] += w * row[j];
     }
   }
-  // By Cholesky's factors; false where the matrix is not positive definite. The matrix is lost.
+  // False where the matrix is not positive definite. The matrix is lost.
   bool solve(std::array<double, N>& x) {
-    for (std::size_t j = 0; j < N; ++j) {
-      double d = matrix[j][j];
-      const double least = 1e-12 * d;
-      for (std::size_t k = 0; k < j; ++k) d -= matrix[j][k] * matrix[j][k];
-      if (!(d > least)) return false;
-      matrix[j][j] = std::sqrt(d);
-      for (std::size_t i = j + 1; i < N; ++i) {
-        double s = matrix[i][j];
-        for (std::size_t k = 0; k < j; ++k) s -= matrix[i][k] * matrix[j][k];
-        matrix[i][j] = s / matrix[j][j];
-      }
-    }
-    for (std::size_t i = 0; i < N; ++i) {
-      for (std::size_t k = 0; k < i; ++k) right[i] -= matrix[i][k] * right[k];
-      right[i] /= matrix[i][i];
-    }
-    for (std::size_t i = N; i-- > 0;) {
-      x[i] = right[i];
-      for (std::size_t k = i + 1; k < N; ++k) x[i] -= matrix[k][i] * x[k];
-      x[i] /= matrix[i][i];
-    }
+    if (!factor_cholesky(matrix, N, 1e-12)) return false;
+    solve_cholesky(matrix, N, right);
+    x = right;
     return true;
   }
 };
@@ -175,7 +158,8 @@ bool solve_at(const Patch& patch, const Unknowns& u, const std::vector<double>& 
   }
   if constexpr (N >= kLinear) add_beliefs(problem, patch.curvature, total);
   if constexpr (N == kAll) {
-    for (std::size_t k = kLinear; k < kAll; ++k) problem.matrix[k][k] += 1e-3 * problem.matrix[k][k] + 1e-9;
+    for (std::size_t k = kLinear; k < kAll; ++k)
+      problem.matrix[k * (kAll + 1)] += 1e-3 * problem.matrix[k * (kAll + 1)] + 1e-9;
   }
   return problem.solve(x);
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "numerics/cholesky.h"
 #include "numerics/hash_random.h"
 #include "numerics/host_device.h"
 #include "numerics/parallel_for.h"
@@ -87,17 +88,6 @@ std::vector<double> covariance(const Rows& rows, std::size_t columns) {
   return sums;
 }
 
-// The lower triangle L of a covariance L L^T, by Cholesky, in its place.
-void take_root(std::vector<double>& l, std::size_t columns) {
-  for (std::size_t i = 0; i < columns; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = l[i * columns + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= l[i * columns + k] * l[j * columns + k];
-      l[i * columns + j] = i == j ? std::sqrt(sum) : sum / l[j * columns + j];
-    }
-  }
-}
-
 std::vector<double> inverse_triangle(const std::vector<double>& l, std::size_t columns) {
   std::vector<double> inverse(l.size(), 0.0);
   for (std::size_t c = 0; c < columns; ++c) {
@@ -146,7 +136,7 @@ SlicedTransport::SlicedTransport(std::vector<float> measured, std::size_t column
   if (!(trace > 0.0)) return;
   constexpr double kLeast = 1e-9;  // of the trace
   for (std::size_t i = 0; i < columns; ++i) l[i * columns + i] += ridge * l[i * columns + i] + kLeast * trace;
-  take_root(l, columns);
+  if (!factor_cholesky(l, columns, 0.0)) return;
   const std::vector<double> inverse = inverse_triangle(l, columns);
   root_.assign(l.begin(), l.end());
   inverse_.assign(inverse.begin(), inverse.end());
