@@ -45,6 +45,9 @@ struct MeasuredBody {
   Vec3d center;
   Vec3d half_axes{1.0, 1.0, 1.0};
   Vec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  // How rough the ground of its recipe is: the rms of its relief over means within some two hundredths of the
+  // diameter, in diameters. Coarse and smoothed models have little; 0 = unknown.
+  double roughness = 0.0;
   // The file of its whole recipe, with a relief, relative to the folder of the population; or empty. A drawn
   // body's ground is laid from it.
   std::string recipe;

@@ -82,6 +82,7 @@ void visit_fields(FieldVisitor& v, MeasuredBody& body) {
   v.required("diameter", body.diameter, kPositive);
   v.field("rotation_period", body.rotation_period, kNotNegative);
   v.field("density", body.density, kNotNegative);
+  v.field("roughness", body.roughness, kNotNegative);
   v.field("unit", body.unit, kPositive);
   v.field("center", body.center, kAnyNumber);
   v.required("half_axes", body.half_axes, kPositive);

@@ -286,13 +286,17 @@ DrawnBody draw_body(const Recipe& recipe) { return PopulationDraw(recipe).draw()
 
 const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population) {
   const MeasuredBody* best = nullptr;
-  double least = 0.0;
+  double least = 0.0, roughest = 0.0;
+  for (const MeasuredBody& body : population.bodies)
+    if (!body.recipe.empty()) roughest = std::max(roughest, body.roughness);
   for (const MeasuredBody& body : population.bodies) {
     if (body.recipe.empty()) continue;
-    // The logarithm of the ratio of the diameters, one for another class, one for a model that is no
+    // The logarithm of the ratio of the diameters, that of the greatest roughness over its own twice, since
+    // ground that a model does not show looks molten, a half for another class, one for a model that is no
     // camera's.
-    const double unlike = std::fabs(portable::log(body.diameter / drawn.diameter)) +
-                          (body.kind != drawn.kind) + (body.source != ShapeSource::kCamera);
+    const double smooth = body.roughness > 0.0 ? portable::log(roughest / body.roughness) : 0.0;
+    const double unlike = std::fabs(portable::log(body.diameter / drawn.diameter)) + 2.0 * smooth +
+                          0.5 * (body.kind != drawn.kind) + (body.source != ShapeSource::kCamera);
     if (best == nullptr || unlike < least) best = &body, least = unlike;
   }
   return best;

@@ -35,8 +35,8 @@ struct DrawnBody {
 DrawnBody draw_body(const Recipe& recipe);
 
 // The measured body whose ground a drawn one gets, or null where no body of the population has a relief. It
-// is the most alike in size and class. A body that a camera measured is preferred, since other models are
-// smoother.
+// is the most alike in size, class and, above all, of the roughest ground: models that are coarse or smooth
+// look molten on others. A body that a camera measured is preferred.
 const MeasuredBody* ground_donor(const DrawnBody& drawn, const BodyPopulation& population);
 
 // The drawn recipe with the relief of the measured body below its other layers, laid as a likeness and as

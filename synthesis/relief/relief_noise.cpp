@@ -308,6 +308,24 @@ ReliefLayer with_own_heights(const ReliefLayer& layer, const LayerSource& source
   return own;
 }
 
+double relief_roughness(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body,
+                        double deviation) {
+  ReliefGround ground;
+  ground.find(layer, source, body);
+  const ReliefPoints points(ground.places, lattice_spacing(layer));
+  std::vector<double> heights;
+  for (const std::uint16_t code : ground.codes)
+    heights.push_back(double{ground.low} + double{ground.step} * code);
+  const std::vector<double> means = smoothed_heights(points, heights, deviation);
+  double squares = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double narrow = heights[i] - means[i];
+    squares += points.weight(i) * narrow * narrow;
+    weights += points.weight(i);
+  }
+  return weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
+}
+
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore&) {
   PreparedRelief prepared{{}, std::make_shared<ReliefGround>()};
   if (source.shared != nullptr) {

@@ -60,6 +60,10 @@ PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, Arra
 // their bytes, but for levels below the model, which are then made of these heights. Throws as placed() does.
 ReliefLayer with_own_heights(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body);
 
+// The rms of the layer's heights over their means with this standard deviation, both in length units.
+double relief_roughness(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body,
+                        double deviation);
+
 // The noise at a site. Throws InputError, which begins with the source's place, where the layer has no
 // pixels, or where they are not those of the places on this body.
 ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, const LayerSource& source,

@@ -22,7 +22,9 @@
 #include "numerics/files/relative_path.h"
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/body/body_tables.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/relief/relief_noise.h"
 #include "tasks/estimation/body_class.h"
 #include "tasks/job/load_recipe.h"
 #include "tasks/job/output_names.h"
@@ -156,9 +158,21 @@ MeasuredBody measured_body(const MetaballBody& body, const TriangleMesh& mesh, d
   return measured;
 }
 
-bool has_relief(const Recipe& recipe) {
-  return std::any_of(recipe.layers.begin(), recipe.layers.end(),
-                     [](const Layer& layer) { return std::holds_alternative<ReliefLayer>(layer); });
+// The roughness of the first relief, in diameters; nothing without one.
+std::optional<double> ground_roughness(const Recipe& recipe, const std::string& name, double diameter) {
+  constexpr double kDeviation = 0.01;  // of the means, diameters
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    const auto* relief = std::get_if<ReliefLayer>(&recipe.layers[i]);
+    if (relief == nullptr) continue;
+    ArrayStore arrays;
+    const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
+    const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+    const LayerSource source{recipe, static_cast<int>(i), fmt::format("{}: layers[{}]", name, i)};
+    return relief_roughness(*relief, source, {body, arrays.view(), metaballs.lists()},
+                            kDeviation * diameter) /
+           diameter;
+  }
+  return std::nullopt;
 }
 
 // The body of a recipe that a fit wrote. Its ground is laid on drawn bodies from that file.
@@ -176,7 +190,11 @@ MeasuredBody from_recipe(const fs::path& file, const PopulationOptions& options)
   }
   const double unit = meters_in(recipe.length_unit) / meters_in(options.unit);
   MeasuredBody measured = measured_body(body, bare_body(recipe).meshed_at(kFrameCells), unit);
-  if (has_relief(recipe)) measured.recipe = relative_to(options.output, file);
+  if (const std::optional<double> roughness =
+          ground_roughness(recipe, name, measured.diameter / measured.unit)) {
+    measured.roughness = rounded(*roughness);
+    measured.recipe = relative_to(options.output, file);
+  }
   return measured;
 }
 
@@ -232,6 +250,7 @@ nlohmann::ordered_json to_json(const MeasuredBody& body) {
           {"class", std::string(class_word(body.kind))},
           {"source", std::string(source_word(body.source))},
           {"diameter", body.diameter},
+          {"roughness", body.roughness},
           {"has_ground", !body.recipe.empty()}};
 }
 

@@ -6,6 +6,7 @@
 #include "numerics/errors.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/relief/relief_noise.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/reliefs.h"
@@ -140,6 +141,20 @@ TEST(LayOnBase, DrawnHeightsBecomeOnesOwn) {
   }
   EXPECT_EQ(testing::refusal_text([&] { with_own_heights(measured, "file"); }),
             "file: layers: no relief draws its heights; add --like, --laid or --fill-unseen");
+}
+
+TEST(LayOnBase, NarrowWavesOfAReliefAreRoughness) {
+  const Recipe measured = ball("km", 1.0);
+  const auto roughness = [&](double waves) {
+    const ReliefLayer heights = testing::relief_layer(
+        measured, 0.02, -0.02, 0.02, [&](const Vec3d& p) { return 0.01 * std::sin(waves * p.x); });
+    ArrayStore arrays;
+    const BodyTables body = make_body(*measured.body, 1, arrays);
+    const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+    return relief_roughness(heights, {measured, 0, "test"}, {body, arrays.view(), metaballs.lists()}, 0.05);
+  };
+  EXPECT_NEAR(roughness(60.0), 0.01 / std::sqrt(2.0), 1.5e-3);
+  EXPECT_LT(roughness(2.0), 1e-4);
 }
 
 // A ball under a relief of edges of this share of its radius.

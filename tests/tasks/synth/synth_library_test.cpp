@@ -50,7 +50,8 @@ TEST_F(SynthLibrary, HasAPopulation) {
 
 TEST_F(SynthLibrary, LaysGroundOnDrawnBodiesLong) {
   const nlohmann::json made = summary(
-      "asteroids --diameter 330 --seed 3 --details all --resolution 48 -o g.ply --write-recipe g.astro");
+      "asteroids --diameter 330 --class contact_binary --seed 3 --details all --resolution 48 -o g.ply "
+      "--write-recipe g.astro");
   EXPECT_EQ(made["drawn_body"]["ground"], "itokawa");
   EXPECT_TRUE(made["closed"].get<bool>());
   succeed("g.astro -o again.ply --resolution 48");
