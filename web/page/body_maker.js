@@ -3,19 +3,21 @@
 // coarse mesh that a change overtakes is still shown, so that something always follows the hand.
 export const LADDER = [32, 64, 128, 256, 384, 512];
 const COARSE_MS = 150;      // main makes the second level, too, where the first took no longer
+const QUIET_MS = 180;       // after a change before finer levels begin: while a knob is turned, coarse ones alone are made
 const LONGEST_MS = 45000;   // a level that would take longer is left out, unless it is asked for
 const GROWTH = 2.3;         // the time of a mesh grows with its cells to this power
 
 export class BodyMaker {
   // hooks: onmesh(mesh, cells, isFirst), onrefusal(error), onworking(isWorking).
   constructor(cores, hooks) {
-    Object.assign(this, {cores, hooks, next: null, running: null, expected: COARSE_MS});
+    Object.assign(this, {cores, hooks, next: null, running: null, expected: COARSE_MS, wake: () => {}});
   }
 
   // `wanted` is {recipe (bytes), name, cells, values}; with `opens` the finer core begins at once, with `mesh` the first level is
   // that mesh, with `patient` no level is left out.
   want(wanted) {
     this.next = wanted;
+    this.wake();
     this.cores.fine.stop("replaced");
     if (!this.running) {
       this.running = this.run().finally(() => {
@@ -31,6 +33,7 @@ export class BodyMaker {
   // Ends the meshes of what is open.
   async stop(reason) {
     this.next = null;
+    this.wake();
     this.cores.fine.stop(reason);
     if (reason === "user" && this.running) this.cores.main.stop(reason);
     await this.settled();
@@ -43,6 +46,14 @@ export class BodyMaker {
       this.next = null;
       await this.climb(wanted).catch(error => this.next || error.stopped || this.hooks.onrefusal(error));
     }
+  }
+
+  // Until nothing has been wanted for a while, or something is.
+  quiet() {
+    return new Promise(done => {
+      const over = setTimeout(done, QUIET_MS);
+      this.wake = () => { clearTimeout(over); done(); };
+    });
   }
 
   async made({recipe, name, values}, core, cells) {
@@ -61,7 +72,9 @@ export class BodyMaker {
       if (this.next && number > 0) return;
       this.hooks.onmesh(mesh, cells, number === 0);
       if (number === 0) this.expected = mesh.milliseconds || COARSE_MS;
+      if (number === 0 && !wanted.opens) await this.quiet();
       const growth = Math.pow((levels[number + 1] || 0) / cells, number > 0 ? GROWTH : 1);
+      if (number === 1 && early) continue;  // it has begun
       if (this.next || (!wanted.patient && growth * mesh.milliseconds > LONGEST_MS)) return;
     }
   }

@@ -86,6 +86,10 @@ def wall():
     return "\n".join(rows)
 
 
+def meshes():
+    return json.dumps({file.name.removesuffix(".mesh.gz"): base64_text(file.read_bytes()) for file in sorted(WALL.glob("*.mesh.gz"))})
+
+
 def in_script(text):
     """A script must not hold what ends its element or begins a comment of HTML."""
     return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")
@@ -99,6 +103,7 @@ def main():
     parts = {
         "style": (HERE / "page.css").read_text(),
         "wall": wall(),
+        "meshes": meshes(),
         "core": packed((options.core / "astrolith_core.wasm").read_bytes()),
         "data": packed(data(options.core)),
         "scripts": in_script(joined(HERE / "page.js")),

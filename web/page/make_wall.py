@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Makes the pictures of the page's wall: web/page/wall/NAME.webp, 25 views around each body in five rows of five.
+"""Makes the page's wall: web/page/wall/NAME.webp, 25 views around each body in five rows of five, and NAME.mesh.gz, a mesh of
+32 cells that is shown until the core has made one.
 
     make_wall.py SYNTH [NAME ...]
 
 It needs python3-pil. Drawn bodies also get their recipes, NAME.astro. wall.json says what stands under a picture.
 """
 
+import gzip
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+from coarse_mesh import packed
 from PIL import Image
 
 WALL = pathlib.Path(__file__).resolve().parent / "wall"
@@ -19,6 +22,7 @@ ROOT = WALL.parent.parent.parent
 ROWS, SIDE = 5, 128
 SPACE = (0, 0, 0)  # page.css lets its own colour show where the sheet is darker
 QUALITY = 50
+MESH_CELLS = 32
 
 # Bodies that nobody has seen: the options of their draws.
 DRAWN = {
@@ -32,7 +36,8 @@ DRAWN = {
 def recipe_of(name, synth):
     if name in DRAWN:
         recipe = WALL / f"{name}.astro"
-        subprocess.run([synth, "asteroids", *DRAWN[name], "--details", "laws", "--albedo", "drawn", "--write-recipe", recipe,
+        subprocess.run([synth, "asteroids", *DRAWN[name], "--details", "relief", "--own-heights", "--albedo", "drawn",
+                        "--write-recipe", recipe,
                         "--quiet"], check=True)  # fmt: skip
         return recipe
     measured = ROOT / f"library/{name}.astro"
@@ -52,13 +57,20 @@ def sheet(recipe, synth, folder):
     return made.convert("RGB").resize((ROWS * SIDE, ROWS * SIDE), Image.LANCZOS)
 
 
+def coarse_mesh(recipe, synth, folder):
+    mesh, summary = folder / "coarse.ply", folder / "coarse.json"
+    subprocess.run([synth, recipe, "--resolution", str(MESH_CELLS), "-o", mesh, "--summary", summary, "--quiet"], check=True)
+    return packed(mesh, json.loads(summary.read_text()))
+
+
 def main():
     synth, names = sys.argv[1], sys.argv[2:]
     names = names or [body["name"] for body in json.loads((WALL / "wall.json").read_text())]
     for name in names:
         with tempfile.TemporaryDirectory() as folder:
-            file = WALL / f"{name}.webp"
-            sheet(recipe_of(name, synth), synth, pathlib.Path(folder)).save(file, quality=QUALITY, method=6)
+            file, recipe, work = WALL / f"{name}.webp", recipe_of(name, synth), pathlib.Path(folder)
+            (WALL / f"{name}.mesh.gz").write_bytes(gzip.compress(coarse_mesh(recipe, synth, work), 9, mtime=0))
+            sheet(recipe, synth, work).save(file, quality=QUALITY, method=6)
             print(f"{file.name}: {file.stat().st_size} bytes", flush=True)
 
 

@@ -11,6 +11,7 @@ import {CoreClient} from "./core_client.js";
 import {BodyMaker} from "./body_maker.js";
 import {Stage} from "./stage.js";
 import {newAsteroids} from "./draws.js";
+import {coarseMesh} from "./coarse_mesh.js";
 import {droppedFiles, sortedFiles, imagesIn} from "./opening.js";
 import {recordTurn} from "./film.js";
 import {printedMesh} from "./printed_mesh.js";
@@ -22,6 +23,7 @@ const LONGEST_LINK = 500000;  // characters; browsers take addresses of one or t
 const SILENT_MS = 300;        // after which the bar says that work goes on
 const AHEAD_MS = 1200;        // of rest before the next asteroid is drawn ahead
 const VALUE_CELLS = 128;      // of the finest mesh whose values are shown: gravity takes long
+const COARSE_CELLS = 32;      // of the wall's meshes (make_wall.py)
 
 const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
 // Each byte as a character, in parts: a call has room for so many arguments.
@@ -33,11 +35,12 @@ function bytesText(bytes) {
 const encoded = text => new TextEncoder().encode(text);
 const base64Address = bytes => btoa(bytesText(bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 
+const unzipped = bytes => new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 // The bytes that the build has compressed into an element of the page.
-async function unpacked(id) {
+function unpacked(id) {
   const bytes = bytesOf(at(id).textContent);
   at(id).remove();
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  return unzipped(bytes);
 }
 
 async function startPage() {
@@ -46,6 +49,7 @@ async function startPage() {
     unpacked("data").then(bytes => JSON.parse(new TextDecoder().decode(bytes)))]);
   const newCore = () => new CoreClient(DATA.worker, module), cores = {main: newCore(), fine: newCore(), ahead: newCore()};
   const library = Object.fromEntries(Object.entries(DATA.library).map(([name, text]) => [`${name}.astro`, bytesOf(text)]));
+  const coarseMeshes = JSON.parse(at("meshes").textContent);
   const stage = new Stage(), values = schemaValues(DATA.schema), knobs = recipeKnobs(DATA.knobs, values);
   let recipe = null, size = 1, opened = 0, unchanged = "";
 
@@ -94,7 +98,7 @@ async function startPage() {
       say(mesh, cells);
       at("refusal").textContent = "";
       form.clear();
-      if (isFirst) panel.update();
+      if (isFirst && recipe) panel.update();
     },
     onrefusal: error => refuse(error),
     onworking: isWorking => tellWork(isWorking),
@@ -190,8 +194,8 @@ async function startPage() {
     return hasImages ? recipeText.read(await written()) : document;  // the heights lie in the recipe then
   }
 
-  // Shows a document; `mesh` is its coarse mesh where that was made before.
-  async function openDocument(document, name, {words = "", mesh = null, library: libraryName = ""} = {}) {
+  // Shows a document; `mesh` is its coarse mesh where that was made before, by the main core or, with `opens`, not.
+  async function openDocument(document, name, {words = "", mesh = null, opens = !mesh, library: libraryName = ""} = {}) {
     recipe = new EditedRecipe(document, name.replace(/\.astro$/, ".json"));
     unchanged = libraryName && `${libraryName}\n${recipe.text()}`;
     at("drawn").textContent = words;
@@ -211,7 +215,7 @@ async function startPage() {
       size = Math.max(...mesh.figures.extent);
       panel.update();
     }
-    await draw({opens: !mesh, mesh: at("values").value ? null : mesh});
+    await draw({opens, mesh: at("values").value ? null : mesh});
   }
 
   // Opens the bytes of a file, given or promised, with the images beside it. One that holds no recipe leaves the page as it
@@ -235,11 +239,11 @@ async function startPage() {
   const tellRefusal = message => { at("refusal").textContent = message; };
   const openText = (text, name) => openBytes(encoded(text), name);
 
-  async function openNamed(name) {
+  async function openNamed(name, more = {}) {
     const example = DATA.examples[name], drawn = DATA.wall[name];
-    if (library[`${name}.astro`]) return openBytes(library[`${name}.astro`], `${name}.astro`, {library: name});
-    if (drawn) return openBytes(bytesOf(drawn), `${name}.astro`);
-    return example !== undefined && openText(example, `${name}.json`);
+    if (library[`${name}.astro`]) return openBytes(library[`${name}.astro`], `${name}.astro`, {library: name, ...more});
+    if (drawn) return openBytes(bytesOf(drawn), `${name}.astro`, more);
+    return example !== undefined && openBytes(encoded(example), `${name}.json`, more);
   }
 
   async function openMesh({bytes, name}) {
@@ -307,13 +311,19 @@ async function startPage() {
     if (at("examples").value) openNamed(at("examples").value);
     at("examples").value = "";
   };
-  // The picture of a body stays until its first mesh is there.
-  function openFromWall(button) {
+  // The picture of a body stays until its coarse mesh is unpacked, and that until the core has made a finer one.
+  async function openFromWall(button) {
+    const {name} = button.dataset, coarse = coarseMeshes[name];
     at("ghost").style.setProperty("--sheet", button.querySelector(".sheet-view").style.getPropertyValue("--sheet"));
     stage.clear();
     showBody(true);
     at("ghost").hidden = false;
-    return openNamed(button.dataset.name);
+    if (!coarse) return openNamed(name);
+    const number = opened, mesh = coarseMesh(new Uint8Array(await unzipped(bytesOf(coarse))));
+    if (number !== opened) return;  // another was chosen meanwhile
+    await maker.stop("replaced");
+    maker.hooks.onmesh(mesh, COARSE_CELLS, true);
+    return openNamed(name, {mesh, opens: true});
   }
   document.querySelectorAll(".bodies button").forEach(button => { button.onclick = () => openFromWall(button); });
   at("home").onclick = () => showBody(false);
