@@ -216,6 +216,17 @@ export class BodyView {
     this.ondraw();
   }
 
+  // Draws a point of a body once, before there is any, so that the first one need not wait for what a graphics card prepares.
+  warm(width, height) {
+    if (this.lost || this.shown().length > 0) return;
+    if (!this.isReady()) return void setTimeout(() => this.warm(width, height), 50);
+    Object.assign(this.canvas, {width, height});
+    this.setBody(0, {positions: new Float32Array(9), normals: new Float32Array(9), triangles: Uint32Array.of(0, 1, 2)}, [0, 0, 0, 1]);
+    this.drawPixels(width, height);
+    this.removeBody(0);
+    this.gl.flush();
+  }
+
   // The picture of a size in pixels, painted into a context of two dimensions.
   paintInto(context, width, height) {
     Object.assign(this.canvas, {width, height});

@@ -20,6 +20,7 @@ import {kept} from "./kept.js";
 import {tabs} from "./tabs.js";
 
 const LONGEST_LINK = 500000;  // characters; browsers take addresses of one or two million
+const WARM_MS = 100;          // after the wall is shown
 const SILENT_MS = 300;        // after which the bar says that work goes on
 const AHEAD_MS = 1200;        // of rest before the next asteroid is drawn ahead
 const VALUE_CELLS = 128;      // of the finest mesh whose values are shown: gravity takes long
@@ -164,8 +165,12 @@ async function startPage() {
     if (isBody) return stage.view.request();
     at("title").textContent = "";
     tellKept();
+    warmSoon();
     drawSoon();
   }
+
+  // The first picture of a body is prepared while the wall is looked at.
+  const warmSoon = () => setTimeout(() => stage.view.warm && stage.view.warm(at("stage").clientWidth || innerWidth, at("stage").clientHeight || innerHeight), WARM_MS);
 
   // Draws ahead once the page is at rest: what the user has chosen goes first.
   let soon = 0;
