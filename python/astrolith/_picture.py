@@ -23,6 +23,7 @@ def render(
     *,
     views: Sequence[Sequence[float]] = (),
     cameras: Union[str, Sequence[str]] = (),
+    map: str = "",
     sun: Sequence[float] = (-0.75, 0.45, 0.55),
     sun_body: Optional[Sequence[float]] = None,
     reflectance: str = "rock",
@@ -44,6 +45,9 @@ def render(
     cameras
         Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one panel each.
         Without views and cameras: +x, +y, +z and obliquely, a patch from above.
+    map
+        ``"equirectangular"``, all longitudes and latitudes, or ``"hemispheres"``, two by Lambert's projection, which keeps
+        areas, in place of views, with lines every 30 degrees. The light comes from the upper left.
     sun
         The direction towards the sun in the axes of each view: right, up, to the viewer.
     sun_body
@@ -79,6 +83,10 @@ def render(
     words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else _arrays.items(cameras, "cameras"))]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
     towards_sun = _arrays.vector(towards_sun, sun_name)
+    if map not in ("", "equirectangular", "hemispheres"):
+        raise ValueError(f'map: must be "equirectangular" or "hemispheres", is {map!r}')
+    if map and (directions or words or sun_body is not None):
+        raise ValueError("map: shows all directions, lit from the upper left; leave out views, cameras and the sun")
     for name, direction in [("views", d) for d in directions] + [(sun_name, towards_sun)]:
         if not any(direction):
             raise ValueError(f"{name}: 0 0 0 is no direction; give another")
@@ -90,6 +98,7 @@ def render(
         albedo,
         directions,
         words,
+        map,
         towards_sun,
         sun_body is not None,
         _arrays.text(reflectance, "reflectance"),

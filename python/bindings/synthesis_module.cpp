@@ -238,10 +238,10 @@ std::pair<std::string, std::string> vary_in_job(const std::string& json, const f
 NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
                                 const OptionalRows& normals, const OptionalRows& colors,
                                 const std::vector<std::array<double, 3>>& views,
-                                const std::vector<std::string>& cameras, const std::array<double, 3>& sun,
-                                bool sun_in_body, const std::string& reflectance, double ambient,
-                                bool transparent, int width, int height, std::uint64_t seed, int threads,
-                                nb::object progress) {
+                                const std::vector<std::string>& cameras, const std::string& map,
+                                const std::array<double, 3>& sun, bool sun_in_body,
+                                const std::string& reflectance, double ambient, bool transparent, int width,
+                                int height, std::uint64_t seed, int threads, nb::object progress) {
   PreviewOptions options;
   options.width = width;
   options.height = height;
@@ -253,6 +253,9 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
   options.views.clear();
   for (const std::string& camera : cameras) options.views.push_back(parse_camera("cameras", camera));
   for (const auto& view : views) options.views.push_back(view_from({view[0], view[1], view[2]}));
+  if (!map.empty())
+    options.views =
+        map_views(map == "hemispheres" ? MapProjection::kHemisphere : MapProjection::kEquirectangular);
   if (colors) {
     for (const Vec3d& c : points_of(*colors)) {
       options.vertex_colors.push_back(
@@ -312,9 +315,9 @@ void bind_products(nb::module_& module) {
              nb::arg("progress").none());
   module.def("render", &render, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
              nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("views"),
-             nb::arg("cameras"), nb::arg("sun"), nb::arg("sun_in_body"), nb::arg("reflectance"),
-             nb::arg("ambient"), nb::arg("transparent"), nb::arg("width"), nb::arg("height"), nb::arg("seed"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("cameras"), nb::arg("map"), nb::arg("sun"), nb::arg("sun_in_body"),
+             nb::arg("reflectance"), nb::arg("ambient"), nb::arg("transparent"), nb::arg("width"),
+             nb::arg("height"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
   module.def("texture", &texture, nb::arg("json"), nb::arg("name"), nb::arg("width"), nb::arg("height"),
              nb::arg("content"), nb::arg("tileable"), nb::arg("threads"), nb::arg("progress").none());
 }

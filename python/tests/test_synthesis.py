@@ -200,6 +200,12 @@ def test_cameras_suns_and_transparency_are_those_of_synth(ball):
     assert picture[24, 44, 0] > 150 and picture[24, 24, 0] == 0  # +y is to the right
     with pytest.raises(ValueError, match="cameras"):
         astrolith.render(body, cameras="lat 100")
+    whole = astrolith.render(body, map="equirectangular", width=128, height=64)
+    assert whole[32, 16].min() > 20 and whole.shape == (64, 128, 3)
+    with pytest.raises(ValueError, match="map: must be"):
+        astrolith.render(body, map="mercator")
+    with pytest.raises(ValueError, match="leave out views"):
+        astrolith.render(body, map="hemispheres", views=[(1, 0, 0)])
     with pytest.raises(ValueError, match="reflectance"):
         astrolith.render(body, reflectance="hapke w 1.2")
 
