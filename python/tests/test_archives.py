@@ -7,6 +7,7 @@ import astrolith
 import numpy as np
 import pytest
 from astrolith import bridges
+from astrolith.bridges import pds4
 
 NAMES = {"target": "(25143) Itokawa", "identifier": "urn:nasa:pds:made_bodies:data:itokawa", "investigation": "made bodies"}
 
@@ -54,6 +55,17 @@ def test_what_has_no_label_is_refused(tmp_path):
             bridges.write_pds4_label(tmp_path / file, **NAMES)
     with pytest.raises(ValueError, match="identifier"):
         bridges.write_pds4_label(tmp_path / "body.obj", **{**NAMES, "identifier": "Itokawa"})
+
+
+def test_labels_are_written_from_a_shell(tmp_path, capsys):
+    (tmp_path / "Body 1.ply").write_bytes(binary_ply(FLOATS, FACES))
+    words = ["--target", "(433) Eros", "--collection", "urn:nasa:pds:made:data", "--investigation", "made bodies"]
+    pds4.main([str(tmp_path / "Body 1.ply"), *words])
+    assert capsys.readouterr().out == f"{tmp_path / 'Body 1.ply.xml'}\n"
+    assert "urn:nasa:pds:made:data:body_1.ply" in (tmp_path / "Body 1.ply.xml").read_text()
+    with pytest.raises(SystemExit) as ended:
+        pds4.main([str(tmp_path / "no.ply"), *words])
+    assert ended.value.code == 2 and "no.ply: does not exist" in capsys.readouterr().err
 
 
 def binary_ply(properties, faces, corners=3):

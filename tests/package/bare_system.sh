@@ -32,6 +32,8 @@ inside /usr/bin/python3 -m venv venv
 timed "pip install astrolith" "${pip[@]}" astrolith
 timed "a first picture" synth eros -o eros.glb --preview eros.png --quiet
 for file in eros.glb eros.png; do [[ -s $bare/try/$file ]] || { echo "no $file" >&2; exit 1; }; done
+# Labels have a font, or the C library of fonts would complain.
+[[ -z $(inside synth ky26 -o ky26.glb --preview ky26.png --quiet 2>&1) ]]
 inside astrolith describe eros.glb -o eros.npy --points 2000 --quiet
 inside gravity bennu --density 1190 --quiet
 inside python -c 'import astrolith; assert astrolith.mesh("itokawa", resolution=32).figures.closed'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import os
 import re
@@ -209,3 +210,26 @@ def write_pds4_label(
     xml.indent(root)
     write_bytes(f"{name}.xml", xml.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
     return f"{name}.xml"
+
+
+def main(words: Optional[list[str]] = None) -> None:
+    """Write labels from a shell: ``python -m astrolith.bridges.pds4 body.ply --target "(433) Eros" ...``."""
+    parser = argparse.ArgumentParser(prog="astrolith.bridges.pds4", description="Writes the PDS4 label of each file beside it, as FILE.xml.")
+    parser.add_argument("files", nargs="+", help="meshes (binary .ply) and tables (.csv, as gravity -o writes them)")
+    parser.add_argument("--target", required=True, help='the body, such as "(433) Eros"')
+    parser.add_argument("--target-type", default="Asteroid", help="what it is in PDS4's words (default Asteroid)")
+    parser.add_argument("--collection", required=True, help="urn:agency:archive:bundle:collection; the name of the file follows it")
+    parser.add_argument("--investigation", required=True, help="the name of the study")
+    parser.add_argument("--unit", choices=["m", "km"], help="of the places in tables; meshes state theirs")
+    given = parser.parse_args(words)
+    for file in given.files:
+        product = re.sub(r"[^a-z0-9._-]", "_", os.path.basename(file).lower())
+        try:
+            print(write_pds4_label(file, target=given.target, target_type=given.target_type, identifier=f"{given.collection}:{product}",
+                                   investigation=given.investigation, unit=given.unit))  # fmt: skip
+        except ValueError as error:
+            parser.exit(2, f"{parser.prog}: {error}\n")
+
+
+if __name__ == "__main__":
+    main()
