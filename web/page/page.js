@@ -330,7 +330,8 @@ async function startPage() {
     maker.hooks.onmesh(mesh, COARSE_CELLS, true);
     return openNamed(name, {mesh, opens: true});
   }
-  document.querySelectorAll(".bodies button").forEach(button => { button.onclick = () => openFromWall(button); });
+  let choosing = Promise.resolve();  // until what was chosen last is being made
+  document.querySelectorAll(".bodies button").forEach(button => { button.onclick = () => { choosing = openFromWall(button).catch(refuse); }; });
   at("home").onclick = () => showBody(false);
   function tellKept() {
     const last = kept.recipe();
@@ -463,7 +464,7 @@ async function startPage() {
     at("resolution").value = cells;
     return draw({patient: true});
   };
-  window.astrolith = {openText, openFiles, openNamed, settled: () => opening.then(() => maker.settled()), meshFile, recipeFile, recipeText: () => recipe && recipe.text(), link, setCells};
+  window.astrolith = {openText, openFiles, openNamed, settled: () => opening.then(() => choosing).then(() => maker.settled()), meshFile, recipeFile, recipeText: () => recipe && recipe.text(), link, setCells};
 
   async function openLink(code) {
     let bytes;
