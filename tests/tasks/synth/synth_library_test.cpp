@@ -60,6 +60,14 @@ TEST_F(SynthLibrary, LaysGroundOnDrawnBodiesLong) {
   EXPECT_NE(text("like.json").find("\"arrangement\": \"like\""), std::string::npos);
 }
 
+TEST_F(SynthLibrary, HeightsOfItsOwnGiveTheSameMesh) {
+  succeed("ky26 --laid --seed 4 --own-heights --write-recipe own.astro -o laid.ply --resolution 40");
+  succeed("own.astro -o own.ply --resolution 40");
+  EXPECT_EQ(text("own.ply"), text("laid.ply"));
+  refuse("ky26 --own-heights --write-recipe own.astro",
+         "ky26: layers: no relief draws its heights; add --like, --laid or --fill-unseen");
+}
+
 TEST_F(SynthLibrary, AFileComesBeforeABody) {
   write("eros", kTwoSpheres);
   EXPECT_EQ(synthesise("a.ply"), (succeed("eros -o b.ply --resolution 32"), text("b.ply")));
