@@ -30,9 +30,8 @@ fi
 library=libopencv_core.so.406
 cp -L "/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/$library" build/wheel-packages/lib/
 patchelf --remove-needed libGLX.so.0 "build/wheel-packages/lib/$library"
-export LD_LIBRARY_PATH=$PWD/build/wheel-packages/lib
 for wheel in build/wheels/plain/*.whl; do
-  auditwheel repair --strip -w build/wheels "$wheel"
+  LD_LIBRARY_PATH=$PWD/build/wheel-packages/lib auditwheel repair --strip -w build/wheels "$wheel"
 done
 rm -r build/wheels/plain
 # with_licences WHEEL: puts in what Debian states about the libraries that the wheel carries.

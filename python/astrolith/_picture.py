@@ -83,9 +83,10 @@ def render(
     words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else _arrays.items(cameras, "cameras"))]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
     towards_sun = _arrays.vector(towards_sun, sun_name)
-    if map not in ("", "equirectangular", "hemispheres"):
-        raise ValueError(f'map: must be "equirectangular" or "hemispheres", is {map!r}')
-    if map and (directions or words or sun_body is not None):
+    projection = _arrays.text(map, "map")
+    if projection not in ("", "equirectangular", "hemispheres"):
+        raise ValueError(f'map: must be "equirectangular" or "hemispheres", is {projection!r}')
+    if projection and (directions or words or sun_body is not None):
         raise ValueError("map: shows all directions, lit from the upper left; leave out views, cameras and the sun")
     for name, direction in [("views", d) for d in directions] + [(sun_name, towards_sun)]:
         if not any(direction):
@@ -98,7 +99,7 @@ def render(
         albedo,
         directions,
         words,
-        map,
+        projection,
         towards_sun,
         sun_body is not None,
         _arrays.text(reflectance, "reflectance"),
