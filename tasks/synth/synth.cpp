@@ -98,7 +98,7 @@ void declare_options(Job& job, SynthOptions& options) {
       "other places, patch by patch, and moved until small patches are distributed as on the "
       "measured surface; every --seed gives another one. With --fill-unseen heights are not moved");
   Option laid = job.options.add_flag("--laid", options.laid,
-                                     "as --like without its last step, the moves, in an eighth of the time");
+                                     "as --like without its last step, the moves, in a tenth of the time");
   laid.excludes(job.options.option("--like"));
   job.options.add_flag("--fill-unseen", options.fill_unseen,
                        "ground that no camera saw, which the model has smooth, gets patches of the ground "
